@@ -6,6 +6,7 @@ import re
 
 from mmm_core.language.at_once import base_of
 from mmm_core.language.ellipsis import OTHER
+from mmm_core.language.limbs import ARMS, SOME_ARM, limbs_of
 
 _ANYTHING = ("wave your right hand", "clap your hands")
 """Commands for a request of anything except a denied command."""
@@ -17,6 +18,8 @@ _SAME_MEANING = {
     "put your right hand on your heart": ("bow politely", "nod your head"),
 }
 """Other gestures for what an everyday phrase means, by the gesture that the phrase is answered with."""
+_ARMS = re.compile(r"(?:(?:using|moving|with) )?(?:your |the )?(?:hands?|arms?)")
+"""Hands that a denial is about: "greet me without using your hands"."""
 _WORD = re.compile(r"[a-z]+")
 _OPPOSITE = re.compile(
     r"^\W*(?:(?P<before>\w[^,;.!]*?),? (?:but )?)??(?:(?:please|no),? )*not (?P<what>[^,;.!]+?)"
@@ -50,9 +53,11 @@ def otherwise(command: str, said: str, denied: tuple[str, ...]) -> str:
     'wave your right hand'
     """
     verbs, verb = _verbs(denied), command.partition(" ")[0]
-    if command not in _SAME_MEANING or verb not in verbs or verb in _verbs((said,)):
+    no_arms = any(map(_ARMS.fullmatch, denied))
+    if command not in _SAME_MEANING or not (verb in verbs or no_arms) or verb in _verbs((said,)):
         return command
-    return next((other for other in _SAME_MEANING[command] if other.split()[0] not in verbs), command)
+    allowed = (c for c in (command, *_SAME_MEANING[command]) if c.split()[0] not in verbs)
+    return next((c for c in allowed if not no_arms or not limbs_of(c) & (ARMS | SOME_ARM)), command)
 
 
 def opposite(said: str) -> tuple[str, str]:

@@ -29,6 +29,10 @@ _GERUND_FIRST = re.compile(
 )
 _IN_PLACE_OF = re.compile(r"^\W*(?:instead of|rather than|as opposed to|in place of)\b|^not .+, but\b")
 """Words of contrast, after which even what is no act is not to be done: "wave instead of just standing there"."""
+_PLACE = re.compile(
+    r"(?:at|to|towards|with|on|over|above|behind|near|for) (?:(?!your (?:left|right)\b|the (?:left|right)\b)\w+ ?){1,3}$"
+)
+"""A target that is denied: "point, but not at me"."""
 _ALWAYS_DENIES = re.compile(rf"{_IN_PLACE_OF.pattern}|without (?:moving|using)$|except(?: for)?(?: with)?$")
 _GERUND_CLAUSE = re.compile(r"^\W*(?:instead of|rather than|without|no) (?P<what>\w+ing\b[^,;:.]*), (?P<rest>\w.+)$")
 _ONE_HAND_FOR_THE_OTHER = re.compile(
@@ -37,8 +41,11 @@ _ONE_HAND_FOR_THE_OTHER = re.compile(
 _NOT_A_BUT_B = re.compile(
     r"^\W*not (?!only\b)(?P<what>(?:an?|the|your|with|to)? ?[^,;]+?),? but (?:rather |instead )?(?P<rest>.+)$"
 )
+_NOT_THAT_PART = re.compile(
+    r"^\W*not (?P<what>(?:with )?(?:the|your) (?:left|right) (?:hand|arm|shoulder|ear|eye|elbow|knee|cheek|wrist|hip)),? (?P<rest>(?!but\b).*\b(?:left|right) one\b.*)$"
+)
 _SIDE_ONLY = re.compile(
-    rf"^(?:{_any('side verb')}\s+)?(?:your |the |that |my )?(?P<side>left|right)(?: (?:hand|arm|one|side|fist|palm))?"
+    rf"^(?:{_any('side verb')}\s+)?(?:your |the |that |my )?(?P<side>left|right)(?: (?:hand|arm|one|side|fist|palm|shoulder|ear|eye|elbow|knee|cheek|wrist))?"
     r"(?: (?:this time|at all|alone|though|please|either|now))?$"
 )
 _LEAVE = re.compile(
@@ -53,7 +60,9 @@ _RESTS = re.compile(
 _KEEP_STILL = re.compile(
     r"(?:,?\s*(?:and|but|while)\s+)?\b(?:keep|keeping|leave|leaving|hold|holding)\s+(?:your |the )?"
     rf"{_any('kept')}\s+(?:{_any('how still')} )?{_any('kept still')},?\s*(?:and\s+)?"
-    rf"|(?:,?\s*(?:and|but|while)\s+|,\s*)(?:your |the )?(?:{_any('kept')}|(?:left |right )?(?:arm|hand))\s+(?:(?:do|does|should|must|shall|will|may) not|never) (?:to )?(?:move|stir|budge|take part|join in)\b(?: at all)?,?"
+    rf"|(?:,?\s*(?:and|but|while)\s+|,\s*)(?:your |the )?(?:{_any('kept')}|(?:left |right )?(?:arm|hand))\s+(?:"
+    r"(?:(?:do|does|should|must|shall|will|may) not|never) (?:to )?(?:move|stir|budge|take part|join in)\b(?: at all)?"
+    rf"|(?:stays?|remains?|(?:is|are) (?:kept|held|to stay)) (?:{_any('how still')} )?(?:still|motionless|put|in place|where (?:it is|they are))(?=$|[,.;])),?"
 )
 _DIRECTION_ONLY = re.compile(
     r"^(?:to |at |on )?(?:the |your )?(?:up|down|left|right|forward|forwards|back|backward|backwards)(?: side)?$"
@@ -132,7 +141,8 @@ def without_denial(text: str) -> Denial:  # noqa: PLR0912  one branch for each f
                 continue
             if _WAVED_ASIDE.match(what) or _DIRECTION_ONLY.match(what):
                 continue
-            if _is_act(what) or _IN_PLACE_OF.match(clause):
+            is_target = rest and clause.startswith(("but not ", "and not ")) and _PLACE.match(what)
+            if is_target or _is_act(what) or _IN_PLACE_OF.match(clause):
                 anything |= bool(re.search(r"\b(?:anything|everything|whatever)\b", clause))
                 denied.append(re.sub(r"\s+(?:is|are) (?:fine|ok|okay|good).*$", "", what))
                 continue
@@ -143,7 +153,8 @@ def without_denial(text: str) -> Denial:  # noqa: PLR0912  one branch for each f
         if inline and inline.start() > 0:
             what = inline["what"].strip()
             only = _SIDE_ONLY.match(what)
-            if only or _DIRECTION_ONLY.match(what) or _is_act(what) or _ALWAYS_DENIES.match(inline["not"]):
+            is_denied = only or _DIRECTION_ONLY.match(what) or _is_act(what) or _ALWAYS_DENIES.match(inline["not"])
+            if is_denied or (inline["not"].startswith(("but ", "and ")) and _PLACE.match(what)):
                 side = only["side"] if only else side
                 denied.append(what)
                 clause = (clause[: inline.start()] + clause[inline.end() :]).strip()
@@ -163,12 +174,12 @@ def without_denial(text: str) -> Denial:  # noqa: PLR0912  one branch for each f
 
 def _without_opening_denials(text: str, denied: list[str]) -> str:
     """The text without a denial that it begins with: "instead of waving, bow". The denied words are added to `denied`."""
-    for pattern in (_ONE_HAND_FOR_THE_OTHER, _GERUND_CLAUSE, _GERUND_FIRST, _NOT_A_BUT_B):
+    for pattern in (_ONE_HAND_FOR_THE_OTHER, _GERUND_CLAUSE, _GERUND_FIRST, _NOT_A_BUT_B, _NOT_THAT_PART):
         found = pattern.match(text)
-        if found and (_IN_PLACE_OF.match(found[0]) or _is_act(found["what"])):
+        if found and (pattern is _NOT_THAT_PART or _IN_PLACE_OF.match(found[0]) or _is_act(found["what"])):
             denied.append(found["what"].strip())
             text = found["rest"] if "rest" in pattern.groupindex else text[found.end() :]
-            if limb := re.search(r"\b(hand|arm|fist|leg)\b", found["what"]):
+            if limb := re.search(r"\b(hand|arm|fist|leg|shoulder|ear|eye|elbow|knee|cheek|wrist|hip)\b", found["what"]):
                 text = re.sub(r"\b(left|right) one\b", rf"\1 {limb[0]}", text)
     return text
 

@@ -17,7 +17,7 @@ from mmm_core.language.clauses import MOST_WORDS, commands_in_turn
 from mmm_core.language.commands import MOST_AT_ONCE, PlainCommand, Reading, read_exactly
 from mmm_core.language.corrections import corrected
 from mmm_core.language.denial import Denial, without_denial
-from mmm_core.language.ellipsis import with_sides
+from mmm_core.language.ellipsis import completed, with_sides
 from mmm_core.language.limbs import SOME_ARM, limbs_of
 from mmm_core.language.manner import Manner, manner_of
 from mmm_core.language.one_arm import of_one_arm
@@ -31,7 +31,7 @@ _PAST = re.compile(r"^(?!(?:raised|stretched|crossed|folded|extended|red)\b (?:h
 """The verb of "once you have clapped", "if you crossed"."""
 _DO_IT = re.compile(
     r"(?:go ahead and )?(?:do (?:it|that|so|this)|prove it|show (?:me|us|him|her|them|everybody|it))"
-    r"(?P<how> with (?:your|the) (?:left|right) (?:hand|arm))?\W*"
+    r"(?P<how> with (?:your|the) (?:left|right) (?:hand|arm))?(?: too| as well| also| now)*\W*"
 )
 _LIMB_OF_ALL = re.compile(
     r"(?P<limb>(?:your |the )?(?:(?:left|right|both) )?(?:arms?|hands?|head|body)): (?P<parts>.+)$"
@@ -70,7 +70,7 @@ def read(text: str, *, by_rules_alone: bool = False) -> Reading:
         return Reading(text, (), _shown(denial.denied))
     if denial.anything and not denial.rest:
         return Reading(text, ((_command(anything_but(denial.denied)),),), _shown(denial.denied))
-    rest = rewritten(without_request(denial.rest)) if denial.denied else denial.rest
+    rest = _of_denied_limb(rewritten(without_request(denial.rest)), denial) if denial.denied else denial.rest
     steps: list[tuple[PlainCommand, ...]] = []
     notes: list[str] = []
     rest, hand = _for_all(rest)
@@ -90,6 +90,13 @@ def _not_denied(command: PlainCommand, denial: Denial) -> PlainCommand:
     return command if words == command.text else replace(command, text=words, limbs=limbs_of(words))
 
 
+def _of_denied_limb(rest: str, denial: Denial) -> str:
+    """The requested part with the limb of the denial for its pronoun: "don't cross your arms, put them on your hips"."""
+    if _ACT_ON_IT.match(rest) is None or _OWN_PART.search(denial.denied[-1]) is None:
+        return rest
+    return completed(rest, denial.denied[-1]) or rest
+
+
 def _shown(denied: tuple[str, ...]) -> tuple[str, ...]:
     return tuple(as_said(what) for what in denied)
 
@@ -104,7 +111,9 @@ def _referring(bare: str, said: str) -> str:
     if part is not None and (pronoun := _ACT_ON_IT.match(bare)):
         return f"{pronoun[1]} {part[0]}{bare[pronoun.end() :]}"
     act = re.search(
-        r"\b(?:can not|can|could|cannot|how to|how you|whether you|if you) ((?:never |ever )?\w+.*?)(?=,|\.|$)", before
+        r"\b(?:can not|can|could|cannot|how to|how you|whether you|if you|"
+        r"(?:people|everybody|everyone|others|they|we|one)(?: (?:usually|always|often|all|mostly|normally|generally|would))+) ((?:never |ever )?\w+.*?)(?=,|\.|$)",
+        before,
     )
     again = _DO_IT.fullmatch(bare)
     if act and again and SPEAKS_OF_AN_ACT.match(act[1]):

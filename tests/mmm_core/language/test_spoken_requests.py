@@ -42,3 +42,31 @@ from mmm_core.language.reading import read
 )  # fmt: skip
 def test_what_is_read(text: str, read_as: str) -> None:
     assert "; ".join(read(text).sentences) == read_as
+
+
+@pytest.mark.parametrize(
+    ("text", "read_as"),
+    [
+        ("put both arms up no sorry just the left one", "put your left arm up"),
+        ("raise one arm i mean both arms", "raise both arms"), ("bow i mean salute", "salute"),
+        ("look at at the floor", "look down"), ("hay robot nod you're head", "nod your head"),
+        ("lean four word", "lean forward"), ("clap your to hands", "clap both hands"),
+        ("people usually clap at the end, so please do that as well", "clap at the end"),
+        ("it is late and everybody is tired, but one last bow for the audience would really make them happy", "one last bow"),
+        ("if I were you I would bow", "bow"), ("could you shake your head if the answer is no", "shake your head"),
+        ("you have been standing there all day; surely you'd like to stretch both arms", "stretch both arms"),
+        ("the man over there is waving at you, please be polite and nod back", "nod back"),
+        ("we would be much obliged if you lifted your left arm", "lift your left arm"),
+        ("my sister bets that you can't touch your nose; prove her wrong", "touch your nose"),
+        ("hold out your left hand, palm up, then close the fingers",
+         "hold out your left hand with the palm up; close your left fingers"),
+        # and what looks like these
+        ("what is going on on your right", "what is going on on your right"),
+        ("reach up with your left hand, grab something and bring it down",
+         "reach up with your left hand, grab something and bring it down"),
+        ("bow if the king is here", "bow if the king is here"), ("clap for four", "clap for four"),
+        ("a bow would be nice", "a bow"),
+    ],
+)  # fmt: skip
+def test_what_is_read_of_stories_and_slips_of_the_tongue(text: str, read_as: str) -> None:
+    assert "; ".join(read(text).sentences) == read_as
