@@ -14,7 +14,7 @@ from itertools import pairwise
 
 from mmm_core.language import clause_patterns as words
 from mmm_core.language.at_once import are_at_once, goes_on
-from mmm_core.language.count_words import NUMBERS
+from mmm_core.language.count_words import NUMBERS, SAID_TIMES
 from mmm_core.language.ellipsis import OTHER, completed, is_manner
 from mmm_core.language.ellipsis_patterns import KEEPS_ON, THING
 from mmm_core.language.limbs import is_gesture_verb
@@ -161,7 +161,9 @@ def _listed(text: str, whole: _Span) -> list[_Span]:
 
 
 def _are_counted(parts: list[str]) -> bool:
-    """Whether all parts are gestures with an article or a number, and one has a number: "two claps, one nod" is in turn."""
+    """Whether each part has a number, or is a gesture with an article beside one with a number: "two claps, a nod" is in turn."""
+    if len(parts) > 1 and all(words.BEGINS_WITH_A_VERB.match(part) and SAID_TIMES.search(part) for part in parts):
+        return True
     return len(parts) > 1 and all(map(_NOUN.match, parts)) and not all(re.match(r"an? ", part) for part in parts)
 
 
