@@ -32,7 +32,7 @@ from mmm_core.generate.transitions import TRANSITION_TOKENS
 from mmm_core.language.mirroring import mirror_words
 from mmm_core.model.sampling import FirstStep, SamplingSettings, empty_row, fill, pseudo_log_likelihood
 from mmm_core.model.text import TextStates
-from mmm_core.model.tokens import FRAMES_PER_TOKEN
+from mmm_core.model.tokens import FRAMES_PER_TOKEN, tokens_for_frames
 from mmm_core.motion.body_parts import BodyPart
 from mmm_core.motion.motion import FPS
 from mmm_core.motion.performing import performed
@@ -163,7 +163,16 @@ class MotionGeneration:
         candidates = self._fill(command.states, [row] * n, seeds, settings, first)
         ids = candidates[0] if n == 1 else self._likeliest(command.states, candidates)
         count = self._counts[i]
-        return ids if count is None else repeated(self._engine, command, ids, count, settings.opening)
+        many = None if count is None else repeated(self._engine, command, ids, count, settings.opening)
+        if count is not None and many is None:
+            return self._as_said(i, seeds[0])
+        return ids if many is None else many
+
+    def _as_said(self, i: int, seed: int) -> Tensor:
+        """(L, C) ids of a step of one command whose strokes cannot be repeated: the model makes as many as it can."""
+        states = self._read.steps[i][0].states
+        row = empty_row(self._engine.model.transformer, tokens_for_frames(self._engine.predicted_frames(states)))
+        return self._fill(states, [row], [seed], self.settings)[0]
 
     def _seed_of(self, i: int, k: int) -> int:
         """The seed of the k-th command of a step."""

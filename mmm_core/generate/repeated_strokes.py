@@ -35,6 +35,8 @@ _IN_TURN = 1.5
 _SEAM_TOKENS = 2
 """Tokens up to both ends of the repeated part whose frames are compared."""
 _STILL = 1e-9
+_FARTHEST = 1.0
+"""Largest distance between the two ends of a repeated part, as a share of its movement; the model makes such strokes itself."""
 
 
 def with_few_strokes(
@@ -60,8 +62,8 @@ def expected_tokens(n_tokens: int, count: int | None) -> int:
     return n_tokens if count is None else n_tokens + (count - PERFORMED) * (n_tokens // 4)
 
 
-def repeated(engine: MotionModel, command: ReadCommand, ids: Tensor, count: int, opening: int) -> Tensor:
-    """(L', C) ids with `count` strokes, from ids (L, C) with two; the same ids where no part of them returns to its beginning.
+def repeated(engine: MotionModel, command: ReadCommand, ids: Tensor, count: int, opening: int) -> Tensor | None:
+    """(L', C) ids with `count` strokes, from ids (L, C) with two; None where no part of them returns to its beginning.
 
     Args:
         engine: predicts lengths, and decodes the motion that is compared with itself.
@@ -71,7 +73,7 @@ def repeated(engine: MotionModel, command: ReadCommand, ids: Tensor, count: int,
         opening: tokens at the beginning that stay.
     """
     features = engine.model.tokenizer.decode(ids[None])[0].reshape(len(ids), -1)
-    best, found = float("inf"), ids
+    best, found = _FARTHEST, None
     for period in periods(engine, command):
         for strokes, dearness in ((1, 1.0), (2, _IN_TURN)):
             n, times = strokes * period, (count - PERFORMED) // strokes

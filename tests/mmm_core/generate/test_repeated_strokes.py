@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 import torch
 
+from mmm_core.generate import repeated_strokes
 from mmm_core.generate.engine import Engine
 from mmm_core.generate.interpretation import interpret
 from mmm_core.generate.repeated_strokes import expected_tokens, periods, repeated, with_few_strokes
@@ -76,10 +77,17 @@ def test_the_expected_length_is_near_the_length(engine: Engine) -> None:
     assert expected_tokens(12, None) == 12
 
 
-def test_a_motion_that_does_not_return_stays(engine: Engine) -> None:
+def test_a_motion_that_does_not_return_is_not_repeated(engine: Engine) -> None:
     """No period fits into so few tokens."""
     (command,) = interpret(engine, "nod six times").steps[0]
     assert periods(engine, command)
     ids = torch.arange(6).reshape(2, 3)
     with torch.inference_mode():
-        assert repeated(engine, command, ids, 6, 2) is ids
+        assert repeated(engine, command, ids, 6, 2) is None
+
+
+def test_strokes_that_cannot_be_repeated_are_the_model_s_own(engine: Engine, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(repeated_strokes, "_FARTHEST", 0.0)
+    own = tokens(engine, "nod six times")
+    monkeypatch.setattr(repeated_strokes, "FROM_COUNT", 100)
+    assert own[2:] == tokens(engine, "nod six times")[2:], "all but the opening, which the draft has given already"
