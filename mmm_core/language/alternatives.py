@@ -6,20 +6,21 @@ import re
 
 from mmm_core.language.at_once import base_of
 from mmm_core.language.ellipsis import OTHER
-from mmm_core.language.limbs import ARMS, SOME_ARM, limbs_of
+from mmm_core.language.limbs import ARMS, HEAD, SOME_ARM, limbs_of
 
 _ANYTHING = ("wave your right hand", "clap your hands")
 """Commands for a request of anything except a denied command."""
 _SAME_MEANING = {
     "wave your right hand": ("bow politely", "nod your head", "salute"),
     "clap your hands": ("give a thumbs up with your right hand", "cheer with both arms", "nod your head"),
+    "shake your head": ("wag your right index finger", "wobble your head"),
     "nod your head": ("give a thumbs up with your right hand", "bow politely"),
     "bow politely": ("put your right hand on your heart", "nod your head"),
     "put your right hand on your heart": ("bow politely", "nod your head"),
 }
 """Other gestures for what an everyday phrase means, by the gesture that the phrase is answered with."""
-_ARMS = re.compile(r"(?:(?:using|moving|with) )?(?:your |the )?(?:hands?|arms?)")
-"""Hands that a denial is about: "greet me without using your hands"."""
+_NOT_BY = re.compile(r"(?:(?:using|moving|with|by) )?(?:your |the )?(?:(?P<arms>hands?|arms?)|head)")
+"""A part of the body that a denial is about: "greet me without using your hands"."""
 _WORD = re.compile(r"[a-z]+")
 _OPPOSITE = re.compile(
     r"^\W*(?:(?P<before>\w[^,;.!]*?),? (?:but )?)??(?:(?:please|no),? )*not (?P<what>[^,;.!]+?)"
@@ -53,11 +54,12 @@ def otherwise(command: str, said: str, denied: tuple[str, ...]) -> str:
     'wave your right hand'
     """
     verbs, verb = _verbs(denied), command.partition(" ")[0]
-    no_arms = any(map(_ARMS.fullmatch, denied))
-    if command not in _SAME_MEANING or not (verb in verbs or no_arms) or verb in _verbs((said,)):
+    parts = [part for part in map(_NOT_BY.fullmatch, denied) if part]
+    if command not in _SAME_MEANING or not (verb in verbs or parts) or verb in _verbs((said,)):
         return command
+    limbs = frozenset().union(*(ARMS | SOME_ARM if part["arms"] else HEAD for part in parts))
     allowed = (c for c in (command, *_SAME_MEANING[command]) if c.split()[0] not in verbs)
-    return next((c for c in allowed if not no_arms or not limbs_of(c) & (ARMS | SOME_ARM)), command)
+    return next((c for c in allowed if not limbs_of(c) & limbs), command)
 
 
 def opposite(said: str) -> tuple[str, str]:

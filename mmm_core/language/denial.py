@@ -78,6 +78,7 @@ _NOT_USING = re.compile(
 )
 _GO_ON = re.compile(
     r"^(\W*(?:skip|forget|leave out|never mind|instead of|rather than) [^,]+?),? and (?:go (?:straight|right|directly) (?:to|on to|for)|just|do|give me|instead) "
+    r"|^(\W*(?:skip|forget|leave out|never mind|drop) (?:the|your|that) \w+),? and (?!(?:the|an?|your|no|any|not|all)\b)"
 )
 _STOP_AND = re.compile(
     r"^(\W*(?:please )?(?:stop|quit) \w+ing\b[^,]*?),? and (?!\w+ing\b|(?:left|right|up|down|back|forth|forwards?|out|round)\b|(?:your |the |both |left |right )*(?:hands?|arms?|head|fingers?|fists?|shoulders?)$)(?=\w+ \w)"
@@ -119,7 +120,7 @@ def without_denial(text: str) -> Denial:  # noqa: PLR0912  one branch for each f
     if other := _NOT_USING.match(text):
         return Denial(_with_side(other["rest"], OTHER[other["side"]]), (f"use the {other['side']} hand",))
     denied: list[str] = []
-    text = _STOP_AND.sub(r"\1, ", _GO_ON.sub(r"\1, ", text))
+    text = _STOP_AND.sub(r"\1, ", _GO_ON.sub(lambda m: f"{m[1] or m[2]}, ", text))
     for pattern in (_LEAVE, _RESTS):
         text = pattern.sub(lambda m: _note(denied, f"the {m['side']} arm") + ", ", text)
     leaves = len(denied)
@@ -141,8 +142,7 @@ def without_denial(text: str) -> Denial:  # noqa: PLR0912  one branch for each f
                 continue
             if _WAVED_ASIDE.match(what) or _DIRECTION_ONLY.match(what):
                 continue
-            is_target = rest and clause.startswith(("but not ", "and not ")) and _PLACE.match(what)
-            if is_target or _is_act(what) or _IN_PLACE_OF.match(clause):
+            if _is_target(what, clause, rest) or _is_act(what) or _IN_PLACE_OF.match(clause):
                 anything |= bool(re.search(r"\b(?:anything|everything|whatever)\b", clause))
                 denied.append(re.sub(r"\s+(?:is|are) (?:fine|ok|okay|good).*$", "", what))
                 continue
@@ -193,6 +193,13 @@ def _as_it_was(text: str, rest: list[str]) -> str:
 def _is_said_again(clause: str, before: list[str]) -> bool:
     """Whether an earlier clause contains this clause: "hammer" after "hammer with the left hand"."""
     return any(set(clause.split()) <= set(earlier.split()) for earlier in before)
+
+
+def _is_target(what: str, clause: str, rest: list[str]) -> bool:
+    """Whether a denial is about where to, not about an act: "point, but not at me"; "look at me, not at the floor"."""
+    if not rest or not _PLACE.match(what):
+        return False
+    return clause.startswith(("but not ", "and not ")) or f" {what.partition(' ')[0]} " in rest[-1]
 
 
 def _note(denied: list[str], what: str) -> str:

@@ -70,7 +70,11 @@ def read(text: str, *, by_rules_alone: bool = False) -> Reading:
         return Reading(text, (), _shown(denial.denied))
     if denial.anything and not denial.rest:
         return Reading(text, ((_command(anything_but(denial.denied)),),), _shown(denial.denied))
-    rest = _of_denied_limb(rewritten(without_request(denial.rest)), denial) if denial.denied else denial.rest
+    rest = (
+        _of_denied_limb(rewritten(everyday(denial.rest) or without_request(denial.rest)), denial)
+        if denial.denied
+        else denial.rest
+    )
     steps: list[tuple[PlainCommand, ...]] = []
     notes: list[str] = []
     rest, hand = _for_all(rest)

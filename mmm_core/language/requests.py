@@ -64,7 +64,7 @@ _JOINED_GERUND = re.compile(
     r"(\b(?:and|then|or) )((?:clapp|nodd|wav|bow|shrugg|salut|point|look|lean|shak|rais|lower|turn|touch)ing)\b"
 )
 _GERUND_FIRST = re.compile(
-    r"^(?:you )?(\w+ing)\b(?= (?:your|the|to|at|with|me|down|up|and|goodbye|a|an|first|once|twice|then|before|left|right|forward|back|\w+ times)\b|$)"
+    r"^(?:you )?(\w+ing)\b(?= (?:your|the|to|at|with|me|us|him|her|them|down|up|and|goodbye|a|an|first|once|twice|then|before|left|right|forward|back|\w+ times)\b|$)"
 )
 
 

@@ -23,7 +23,7 @@ _TWICE = re.compile(r"\b((?:\w+ ){2,}\w+) \1\b")
 _PAUSES = re.compile(rf"\b(?:{_FILLER}|i mean|you know|sorry|no wait)\b")
 """Words that mark a restart."""
 _FILLERS = re.compile(
-    rf"(?:^|(?<=[\s,.]))(?:{_FILLER}|(?<!do )(?<!did )(?<!if )(?<!whether )(?<!that )(?<!what )(?<!because )(?<!since )you know(?! how\b)|i mean|kinda|sorta)(?:\s*,|\s*\.{{2,}})?(?:\s+|$)",
+    rf"(?:^|(?<=[\s,.]))(?:{_FILLER}|(?<!do )(?<!did )(?<!if )(?<!whether )(?<!that )(?<!what )(?<!because )(?<!since )(?<!behind )(?<!around )(?<!near )(?<!beside )you know(?! how\b)|i mean|kinda|sorta)(?:\s*,|\s*\.{{2,}})?(?:\s+|$)",
     re.IGNORECASE,
 )
 _DRAWN_OUT = re.compile(r"([a-z])\1{2,}", re.IGNORECASE)

@@ -32,7 +32,7 @@ from mmm_core.language.reading import read
         ("look around the room, first to one side and then to the other", "look to the left; look to the right"),
         # and what looks like these
         ("nod yes and clap", "nod yes + clap"), ("shout yes and pump your fist", "shout yes and pump your fist"),
-        ("put your hand on your head, not on the table", "put your hand on your head, not on the table"),
+        ("put your hand on your head, not on the table", "put your hand on your head"),
         ("clap two times", "clap two times"), ("whether you know it or not, wave", "whether you know it or not, wave"),
         ("say maybe", "say maybe"), ("maybe", "wobble your head"), ("greet me with a bow", "greet me with a bow"),
         ("do you know how to bow", "bow"), ("point with your left hand so that I can see it", "point with your left hand"),
@@ -47,6 +47,9 @@ def test_what_is_read(text: str, read_as: str) -> None:
 @pytest.mark.parametrize(
     ("text", "read_as"),
     [
+        ("wave 2 the crowd 4 me", "wave your right hand"), ("hold ur arm up 4 5 secs", "raise your arm up (held for 5 s)"),
+        ("lift ur left arm hi", "lift your left arm high"), ("raise your hand I mean your left hand", "raise your left hand"),
+        ("turn your head to the left uh right", "turn your head to the right"), ("pray 4 us xx", "pray silently"),
         ("put both arms up no sorry just the left one", "put your left arm up"),
         ("raise one arm i mean both arms", "raise both arms"), ("bow i mean salute", "salute"),
         ("look at at the floor", "look down"), ("hay robot nod you're head", "nod your head"),
@@ -60,7 +63,19 @@ def test_what_is_read(text: str, read_as: str) -> None:
         ("my sister bets that you can't touch your nose; prove her wrong", "touch your nose"),
         ("hold out your left hand, palm up, then close the fingers",
          "hold out your left hand with the palm up; close your left fingers"),
+        ("my son is a bit shy, so maybe start by giving him a tiny wave", "wave your right hand (0.56 times as large)"),
+        ("ladies and gentlemen, our robot will now take a deep bow", "take a deep bow"),
+        ("could you please, when the lights go out, raise your right hand so that the people behind you know where you are",
+         "raise your right hand"),
+        ("you know what would be great right now? A big round of applause", "clap your hands"),
+        ("whenever you feel ready and only if nothing hurts, slowly lift your left arm", "lift your left arm (0.62 times as fast)"),
+        ("show our guests the way to the exit on the right", "point to the right"),
+        ("since it is my birthday, could I have a hug", "a hug"),
         # and what looks like these
+        ("ladies and gentlemen, the next act", "ladies and gentlemen, the next act"),
+        ("when you have bowed, clap", "bow; clap"), ("show us the way", "show us the way"),
+        ("clap 4 times", "clap 4 times"), ("look left er right er left", "look to the left; look to the right; look to the left"),
+        ("lift your hand, say hi", "lift your hand, say hi"),
         ("what is going on on your right", "what is going on on your right"),
         ("reach up with your left hand, grab something and bring it down",
          "reach up with your left hand, grab something and bring it down"),
