@@ -60,7 +60,7 @@ def mended_in_context(
             continue
         if not is_right(word):
             words[i] = _expected(near(word), before, after, 1) or word
-        elif before not in _ARTICLES and word not in _key_words() and word not in _STAYS and not is_gesture_verb(word):
+        elif before not in _ARTICLES and not _stays(word):
             meant = _expected(near(word) if is_rare(word) else _key_words_near(word), before, after, 2)
             if meant and (before not in _BEFORE_VERBS or (meant in _WAYS and before != "^")):
                 words[i] = meant
@@ -70,6 +70,10 @@ def mended_in_context(
         parts += [said[end : match.start()], word]
         end = match.end()
     return "".join(parts) + said[end:]
+
+
+def _stays(word: str) -> bool:
+    return word in _key_words() or word in _STAYS or word in lines("stays") or is_gesture_verb(word)
 
 
 def is_beside(first: str, second: str) -> bool:

@@ -26,6 +26,7 @@ def words(sentence: str) -> list[str]:
         ("use the right for waving; the left does nothing", ["wave with your right hand"]),
         ("use the right hand", ["use the right hand"]),
         ("your shoulders turn to the right", ["your shoulders turn to the right"]),
+        ("your shoulders dip left", ["your shoulders dip left"]),
         ("your turn to bow", ["bow"]),
         ("listen in at the door", ["listen in at the door"]),
         ("listen, wave", ["wave"]),
