@@ -16,7 +16,7 @@ from mmm_core.language import clause_patterns as words
 from mmm_core.language.at_once import are_at_once, goes_on
 from mmm_core.language.count_words import NUMBERS, SAID_TIMES
 from mmm_core.language.ellipsis import OTHER, completed, is_manner
-from mmm_core.language.ellipsis_patterns import KEEPS_ON, THING
+from mmm_core.language.ellipsis_patterns import KEEPS_ON, ONLY_SIDE, THING
 from mmm_core.language.limbs import is_gesture_verb
 from mmm_core.language.requests import everyday
 
@@ -130,6 +130,7 @@ def _listed(text: str, whole: _Span) -> list[_Span]:
     if (
         len(parts) == 2
         and not _are_counted(parts)
+        and not (ONLY_SIDE.match(parts[1]) and "and" not in text[spans[0].end : spans[1].start])
         and are_at_once(*parts, joined="and" in text[spans[0].end : spans[1].start])
     ):
         return [whole]

@@ -8,7 +8,7 @@ from __future__ import annotations
 import re
 
 _LIMB = r"(?:hands?|arms?|fists?|ones?|palms?|sides?|shoulders?|ears?|elbows?)"
-_WAYS = r"(?:up|down|forwards?|back(?:wards?)?|ahead|straight ahead|upwards?|downwards?|sideways|behind you|in front(?: of you)?|(?:up |high )?above (?:you|your head)|up high|high up|up in the air|overhead|(?:out )?to the sides?|outwards?)"
+_WAYS = r"(?:up|down|forwards?|back(?:wards?)?|ahead|straight ahead|upwards?|downwards?|sideways|behind you|in front(?: of you)?|(?:up |high )?above (?:you|your head)|up high|high up|up in the air|overhead|(?:out )?to the sides?|outwards?|inwards?|(?:anti-?|counter-?)?clockwise)"
 _AFTER_VERB = (
     r"(?:go |come |move |switch |change |over |out |straight |now |finally |also |back |all the way |around )*"
 )

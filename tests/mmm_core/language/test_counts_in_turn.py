@@ -30,6 +30,9 @@ from mmm_core.language.reading import Reading, read
         ("knock with each hand, one after the other, twice", "knock with alternating hands twice"),
         ("rub one ear, then the other", "rub your right ear; rub your left ear"),
         ("wave at the door, then the window", "wave at the door; wave at the window"),
+        ("swing the left arm, the right arm, then both", "swing the left arm; swing the right arm; swing both arms"),
+        ("rotate your wrists inwards, then outwards", "rotate your wrists inwards; rotate your wrists outwards"),
+        ("salute with the right hand and, while holding it, look left", "salute with the right hand + look to the left"),
         # once more, a stop between, a hold
         ("nod and once more", "nod; nod"), ("nod three times, wait, and once more", "nod three times; nod once"),
         ("rub your belly, stop, rub it again", "rub your belly; rub your belly"),
