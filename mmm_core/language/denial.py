@@ -78,7 +78,7 @@ _NOT_USING = re.compile(
 )
 _GO_ON = re.compile(
     r"^(\W*(?:skip|forget|leave out|never mind|instead of|rather than) [^,]+?),? and (?:go (?:straight|right|directly) (?:to|on to|for)|just|do|give me|instead) "
-    r"|^(\W*(?:skip|forget|leave out|never mind|drop) (?:the|your|that) \w+),? and (?!(?:the|an?|your|no|any|not|all)\b)"
+    r"|^(\W*(?:skip|forget|leave out|never mind) (?:the|your|that) \w+),? and (?!(?:the|an?|your|no|any|not|all)\b)"
 )
 _STOP_AND = re.compile(
     r"^(\W*(?:please )?(?:stop|quit) \w+ing\b[^,]*?),? and (?!\w+ing\b|(?:left|right|up|down|back|forth|forwards?|out|round)\b|(?:your |the |both |left |right )*(?:hands?|arms?|head|fingers?|fists?|shoulders?)$)(?=\w+ \w)"

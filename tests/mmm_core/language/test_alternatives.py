@@ -42,6 +42,7 @@ def said(text: str) -> str:
         ("forget the salute and clap", "clap | not: the salute"), ("lift neither arm, just nod", "nod | not: lift your arms"),
         ("leave your arms hanging and shrug", "shrug"), ("left hand only: wave", "wave with your left hand"),
         # and what looks like it
+        ("drop your chin and turn it to the left", "drop your chin and turn it to the left"),
         ("forget the salute and the bow", " | not: the salute and the bow"),
         ("wave your right hand, but do not wave your left", "wave your right hand | not: wave your left hand"),
         ("say hello without bowing", "wave your right hand | not: bowing"),

@@ -37,6 +37,7 @@ from mmm_core.language.reading import read
         ("form two rings with your hands and look through them", "form two rings with your hands and look through them"),
         ("raise your right hand, hold it, and lower it", "raise your right hand; lower your right hand"),
         ("nod as your arm waves", "nod + your arm waves"), ("snap your fingers", "snap your fingers"),
+        ("wave both arms wildly", "wave both arms wildly"),
         ("raise your left hand, then put the hand down", "raise your left hand, then put the hand down"),
     ],
 )  # fmt: skip

@@ -74,6 +74,7 @@ def test_what_is_read(text: str, read_as: str) -> None:
         # and what looks like these
         ("ladies and gentlemen, the next act", "ladies and gentlemen, the next act"),
         ("when you have bowed, clap", "bow; clap"), ("show us the way", "show us the way"),
+        ("show me the way to the left", "show me the way to the left"),
         ("clap 4 times", "clap 4 times"), ("look left er right er left", "look to the left; look to the right; look to the left"),
         ("lift your hand, say hi", "lift your hand, say hi"),
         ("what is going on on your right", "what is going on on your right"),
