@@ -31,7 +31,6 @@ from mmm_core.corpus.forms import (
     WITH_BOTH,
     WITH_HAND,
 )
-from mmm_core.corpus.styles import STYLES
 from mmm_core.corpus.withheld import is_withheld
 from mmm_core.language.inflection import (
     NUMBERS,
@@ -45,6 +44,7 @@ from mmm_core.language.inflection import (
     third_person,
     times,
 )
+from mmm_core.language.moods import MOODS
 
 
 def words_of(g: Gesture) -> Words:
@@ -134,7 +134,7 @@ def _manner(g: Gesture, terse: bool, rng: np.random.Generator) -> str:
         holds = tuple(h for h in HOLDS if not h.startswith("and ")) if terse else HOLDS
         return " " + _pick(holds, rng).replace("{s}", f"{word} second{'s' if seconds > 1 else ''}")
     if g.style:
-        return " " + _pick(STYLES[g.style].words, rng)
+        return " " + _pick(MOODS[g.style].words, rng)
     options += [SLOW] if g.tempo < 0.8 else []
     options += [FAST] if g.tempo > 1.2 else []
     options += [LARGE] if g.size > 1.15 else []

@@ -13,7 +13,7 @@ from mmm_core.corpus.body import Body, perform
 from mmm_core.corpus.families import FAMILIES, Family, Gesture
 from mmm_core.corpus.grammar import caption, usual_counts
 from mmm_core.corpus.score import REST_ARM, ArmPose, Score
-from mmm_core.corpus.styles import STYLES
+from mmm_core.language.moods import MOODS
 from mmm_core.model.tokens import FRAMES_PER_TOKEN, MAX_TOKENS
 from mmm_core.motion.motion import FPS
 from mmm_core.motion.skeleton import Array
@@ -131,9 +131,9 @@ def has_styles(family: Family) -> bool:
 
 def in_a_style(g: Gesture, rng: np.random.Generator) -> Gesture:
     """The gesture in a style drawn at random, with the style's tempo and size."""
-    name = str(rng.choice(list(STYLES)))
-    size = STYLES[name].size if FAMILIES[g.family].counts else 1.0
-    return replace(g, style=name, tempo=STYLES[name].tempo, size=size)
+    name = str(rng.choice(list(MOODS)))
+    size = MOODS[name].size if FAMILIES[g.family].counts else 1.0
+    return replace(g, style=name, tempo=MOODS[name].tempo, size=size)
 
 
 def draw_spec(
@@ -201,7 +201,7 @@ def synthesise_spec(
     n_tokens = int(np.ceil(score.time_s * FPS / FRAMES_PER_TOKEN - 1e-6))
     if n_tokens > MAX_TOKENS:
         return None
-    style = STYLES.get(spec.gestures[0].style)
+    style = MOODS.get(spec.gestures[0].style)
     posture = (style.trunk_pitch_rad, style.head_pitch_rad) if style else (0.0, 0.0)
     body = perform(score, n_tokens * FRAMES_PER_TOKEN, style.stiffness if style else 0.0, posture)
     return SynthClip(body.features(), words_for(spec, rng), spec, body)

@@ -12,8 +12,8 @@ from mmm_core.corpus.beat import BEAT_S, Calm
 from mmm_core.corpus.body import perform
 from mmm_core.corpus.families import FAMILIES, Gesture
 from mmm_core.corpus.score import Score
-from mmm_core.corpus.styles import STYLES
 from mmm_core.corpus.synthesis import rest_pose
+from mmm_core.language.moods import MOODS
 from mmm_core.motion.features import recover
 from mmm_core.motion.motion import FPS
 from mmm_core.motion.posture_features import PostureFeatures, posture_features
@@ -81,7 +81,7 @@ def reference(g: Gesture, otherwise: bool = False) -> Reference:
     starts, ends = min(score.strokes_s, default=0.0), score.time_s
     score.relax(0.8)
     score.hold(END_S)
-    style = STYLES.get(g.style)
+    style = MOODS.get(g.style)
     posture = (style.trunk_pitch_rad, style.head_pitch_rad) if style else (0.0, 0.0)
     body = perform(score, int(np.ceil(score.time_s * FPS)), style.stiffness if style else 0.0, posture)
     motion = recover(body.features())

@@ -16,6 +16,7 @@ from mmm_core.generate.interpretation import ReadCommand
 from mmm_core.generate.motion_model import MotionModel
 from mmm_core.generate.transitions import TRANSITION_TOKENS, transitions
 from mmm_core.language.manner import Manner
+from mmm_core.language.moods import MOODS
 from mmm_core.model.text import TextStates
 from mmm_core.model.tokens import FRAMES_PER_TOKEN, MAX_TOKENS, tokens_for_frames
 from mmm_core.motion.performing import Stretch
@@ -49,12 +50,13 @@ class Step:
 
     @property
     def manner(self) -> Manner:
-        """The manner of the step: the strongest tempo, size and hold among its commands."""
+        """The manner of the step: the strongest tempo, size and hold among its commands, and their first mood."""
         manners = [c.manner for c in self.commands]
         return Manner(
             max((m.tempo for m in manners), key=lambda f: abs(f - 1)),
             max((m.size for m in manners), key=lambda f: abs(f - 1)),
             max(m.hold_s for m in manners),
+            next((m.mood for m in manners if m.mood), ""),
         )
 
     @property
@@ -109,7 +111,9 @@ def stretches_of(steps: Sequence[Step], n_tokens: Sequence[int]) -> list[Stretch
     for i, (n, step) in enumerate(zip(n_tokens, steps, strict=False)):
         start = found[-1].end if found else 0
         end = start + (n + (TRANSITION_TOKENS if i else 0)) * FRAMES_PER_TOKEN
-        found.append(Stretch(start, end, step.manner.tempo, step.manner.size, step.manner.hold_s))
+        manner, mood = step.manner, MOODS.get(step.manner.mood)
+        lean_rad = (mood.trunk_pitch_rad, mood.head_pitch_rad) if mood else (0.0, 0.0)
+        found.append(Stretch(start, end, manner.tempo, manner.size, manner.hold_s, *lean_rad))
     return found
 
 

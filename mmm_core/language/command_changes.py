@@ -139,7 +139,7 @@ def _in_manner(command: PlainCommand, *, tempo: float = 1.0, size: float = 1.0) 
     manner = command.manner
     fast, large = manner.tempo * tempo, manner.size * size
     fast, large = min(FASTEST, max(1 / FASTEST, fast)), min(LARGEST, max(1 / LARGEST, large))
-    return replace(command, manner=Manner(fast, large, manner.hold_s))
+    return replace(command, manner=replace(manner, tempo=fast, size=large))
 
 
 def with_times(steps: Steps, times: int) -> tuple[Steps, int]:

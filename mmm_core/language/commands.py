@@ -7,10 +7,11 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from mmm_core.language.limbs import limbs_of
 from mmm_core.language.manner import FASTEST, LARGEST, LONGEST_HOLD_S, Manner
+from mmm_core.language.moods import MOODS
 
 EXACTLY = "exactly:"
 """Prefix of a text that is read verbatim."""
@@ -18,8 +19,9 @@ MOST_STEPS, MOST_AT_ONCE = 8, 3
 """Largest number of steps in a text read verbatim, and of commands in a step: the model has three body parts."""
 _MARKS = re.compile(r"[();+]")
 _COMMAND = re.compile(r"(?P<text>[^()]*?[a-z][^()]*?)\s*(?:\((?P<manner>[^()]*)\))?", re.IGNORECASE)
-_SAID = re.compile(r"(?:(?P<tempo>N) times as fast|(?P<size>N) times as large|held for (?P<hold>N) s)".replace(
-    "N", r"\d{1,3}(?:\.\d{1,3})?"))  # fmt: skip
+_SAID = re.compile(
+    r"(?:(?P<tempo>N) times as fast|(?P<size>N) times as large|held for (?P<hold>N) s|"
+    rf"in a (?P<mood>{'|'.join(MOODS)}) mood)".replace("N", r"\d{1,3}(?:\.\d{1,3})?"))  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -28,7 +30,7 @@ class PlainCommand:
 
     Attributes:
         text: words of the command.
-        manner: tempo, size and hold.
+        manner: tempo, size, hold and mood.
         limbs: limbs that the words name: left_arm, right_arm, some_arm, head, trunk.
     """
 
@@ -43,6 +45,7 @@ class PlainCommand:
         said = [f"{manner.tempo:.2g} times as fast"] if manner.tempo != 1.0 else []
         said += [f"{manner.size:.2g} times as large"] if manner.size != 1.0 else []
         said += [f"held for {manner.hold_s:g} s"] if manner.hold_s else []
+        said += [f"in a {manner.mood} mood"] if manner.mood else []
         return f"{self.text} ({', '.join(said)})" if said else self.text
 
 
@@ -120,11 +123,13 @@ def _manner(said: str | None) -> Manner | None:
         if found is None:
             return None
         if found["tempo"]:
-            manner = Manner(_within(float(found["tempo"]), FASTEST), manner.size, manner.hold_s)
+            manner = replace(manner, tempo=_within(float(found["tempo"]), FASTEST))
         elif found["size"]:
-            manner = Manner(manner.tempo, _within(float(found["size"]), LARGEST), manner.hold_s)
+            manner = replace(manner, size=_within(float(found["size"]), LARGEST))
+        elif found["mood"]:
+            manner = replace(manner, mood=found["mood"])
         else:
-            manner = Manner(manner.tempo, manner.size, min(float(found["hold"]), LONGEST_HOLD_S))
+            manner = replace(manner, hold_s=min(float(found["hold"]), LONGEST_HOLD_S))
     return manner
 
 

@@ -1,4 +1,4 @@
-"""Tempo, size and hold that a clause names: factors and seconds that are applied to the motion, not read by the model."""
+"""Tempo, size, hold and mood that a clause names: they are applied to the motion, and the model does not read them."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from functools import cache
 
 from mmm_core.language.count_words import NUMBERS
+from mmm_core.language.moods import MOODS, mood_of
 from mmm_core.language.word_tables import Rule, RuleTable, lines
 
 STRONGER = 1.25
@@ -67,21 +68,23 @@ _KEEPS = re.compile(r"^(?:hold|keep|leave) (?=(?:your|the|both) )")
 
 @dataclass(frozen=True)
 class Manner:
-    """Tempo, size and hold of a command.
+    """Tempo, size, hold and mood of a command.
 
     Attributes:
         tempo: factor of the speed.
         size: factor of the amplitude.
         hold_s: seconds for which the pose is held; 0 where the clause names none.
+        mood: mood of the posture, a key of `MOODS`; its tempo is part of `tempo`.
     """
 
     tempo: float = 1.0
     size: float = 1.0
     hold_s: float = 0.0
+    mood: str = ""
 
     @property
     def plain(self) -> bool:
-        """Whether tempo, size and hold are the defaults."""
+        """Whether tempo, size, hold and mood are the defaults."""
         return self == Manner()
 
 
@@ -89,7 +92,7 @@ def manner_of(clause: str) -> tuple[str, Manner]:
     """A clause in lower case without its words of manner, and the manner.
 
     >>> manner_of("nod very slowly"), manner_of("give a tiny bow")
-    (('nod', Manner(tempo=0.55..., size=1.0, hold_s=0.0)), ('give a bow', Manner(tempo=1.0, size=0.55..., hold_s=0.0)))
+    (('nod', Manner(tempo=0.55..., size=1.0, hold_s=0.0, mood='')), ('give a bow', Manner(tempo=1.0, size=0.55..., hold_s=0.0, mood='')))
     """
     rest, tempo = _factor(clause, "tempo", FASTEST)
     rest, size = _factor(rest, "size", LARGEST)
@@ -98,6 +101,8 @@ def manner_of(clause: str) -> tuple[str, Manner]:
     )  # "a slow deep bow": the noun stands beside "slow" now; "gently and slowly"
     tempo = max(tempo, again, key=lambda f: abs(f - 1))
     rest, hold_s = _hold(rest)
+    rest, mood = mood_of(rest)
+    tempo = min(FASTEST, max(1 / FASTEST, tempo * MOODS[mood].tempo)) if mood else tempo
     rest = _BEFORE_MARK.sub(r"\1", " ".join(rest.split()))
     rest = _AT_ENDS.sub("", rest)
     rest = _TWICE_AND.sub("", rest)
@@ -105,7 +110,7 @@ def manner_of(clause: str) -> tuple[str, Manner]:
     rest = _A_CONSONANT.sub("a ", _A_VOWEL.sub("an ", rest))
     if not _READS.search(rest):
         return clause, Manner()
-    return rest, Manner(tempo, size, hold_s)
+    return rest, Manner(tempo, size, hold_s, mood)
 
 
 def _factor(clause: str, table: str, most: float) -> tuple[str, float]:

@@ -1,4 +1,4 @@
-"""Changes tempo, size and hold of a motion: features are resampled in time, rotations are scaled towards or away from rest.
+"""Changes tempo, size, hold and posture of a motion: features are resampled in time, rotations are scaled from rest or added to.
 
 Only root and rotation channels are read; the others are computed by forward kinematics. Arms that repeat a stroke swing
 larger or smaller about the path that the strokes have in common, so that a small wave is still made with a raised hand;
@@ -21,6 +21,7 @@ from mmm_core.motion.repetitions import Strokes, body_path, strokes_of
 from mmm_core.motion.skeleton import Array, forward_kinematics, from_six_d, rotation_y, six_d
 
 _TRUNK_HEAD = (3, 6, 9, 12, 15)
+_SPINE, _HEAD = (3, 6, 9), (15,)
 _ARMS = (13, 14, 16, 17, 18, 19, 20, 21)
 MOST_ARM_RAD = 2.9
 """Radians from the first frame that an enlarged arm joint reaches at most; `_MOST` has other bounds for some joints."""
@@ -52,6 +53,7 @@ class Stretch:
         tempo: factor of speed.
         size: factor of size.
         hold_s: seconds that the pose is held; 0 leaves it as it is.
+        trunk_pitch_rad, head_pitch_rad: posture that is added to trunk and head, forward and down positive.
     """
 
     start: int
@@ -59,11 +61,13 @@ class Stretch:
     tempo: float = 1.0
     size: float = 1.0
     hold_s: float = 0.0
+    trunk_pitch_rad: float = 0.0
+    head_pitch_rad: float = 0.0
 
     @property
     def plain(self) -> bool:
         """Whether the manner changes no frame."""
-        return (self.tempo, self.size, self.hold_s) == (1.0, 1.0, 0.0)
+        return self == Stretch(self.start, self.end)
 
 
 def performed(features: NDArray[np.float32], stretches: Sequence[Stretch]) -> tuple[NDArray[np.float32], list[int]]:
@@ -85,6 +89,8 @@ def performed(features: NDArray[np.float32], stretches: Sequence[Stretch]) -> tu
         if stretch.size != 1.0:
             part = slice(stretch.start, stretch.end)
             local[part] = _sized(local[part], local[0], stretch, len(features), strokes_of(motion))
+        if stretch.trunk_pitch_rad or stretch.head_pitch_rad:
+            _lean(local[stretch.start : stretch.end], stretch, len(features))
         places.append(stretch.start + _times(motion, stretch))
     where = np.clip(np.concatenate(places), 0, len(features) - 1)
     ends = np.cumsum([len(p) for p in places]).tolist()
@@ -180,8 +186,22 @@ def _scaled(local: Array, rest: Array, weights: Array, arm_weights: Array, perio
     return out
 
 
+def _lean(local: Array, stretch: Stretch, n_frames: int) -> None:
+    """Add the posture of a stretch to its rotations (T, 22, 3, 3), in place."""
+    weights = _ramp(stretch, n_frames)
+    for joints, pitch_rad in ((_SPINE, stretch.trunk_pitch_rad / len(_SPINE)), (_HEAD, stretch.head_pitch_rad)):
+        pitch = Rotation.from_rotvec(np.outer(pitch_rad * weights, [1.0, 0.0, 0.0])).as_matrix()
+        for joint in joints:
+            local[:, joint] = local[:, joint] @ pitch
+
+
 def _weights(stretch: Stretch, n_frames: int) -> Array:
     """(T,) factors of size, which change gradually next to another stretch."""
+    return 1.0 + (stretch.size - 1.0) * _ramp(stretch, n_frames)
+
+
+def _ramp(stretch: Stretch, n_frames: int) -> Array:
+    """(T,) weights of a manner: 1, and less in the first and last frames next to another stretch."""
     n = stretch.end - stretch.start
     ramp = np.minimum(np.arange(1, n + 1) / RAMP_FRAMES, 1.0)
     weights = np.ones(n)
@@ -189,7 +209,7 @@ def _weights(stretch: Stretch, n_frames: int) -> Array:
         weights = np.minimum(weights, ramp)
     if stretch.end < n_frames:
         weights = np.minimum(weights, ramp[::-1])
-    return 1.0 + (stretch.size - 1.0) * weights
+    return weights
 
 
 def _times(motion: Motion, stretch: Stretch) -> Array:

@@ -27,7 +27,7 @@ class Gesture:
         size: factor of size, 1 as usual.
         height: low or high; "" for the usual height.
         hold_s: seconds that a pose is kept; 0 for the usual time.
-        style: a key of `mmm_core.corpus.styles.STYLES`, "" for none.
+        style: a key of `mmm_core.language.moods.MOODS`, "" for none.
     """
 
     family: str
