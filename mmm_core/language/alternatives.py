@@ -8,8 +8,8 @@ from mmm_core.language.at_once import base_of
 from mmm_core.language.ellipsis import OTHER
 from mmm_core.language.limbs import ARMS, HEAD, SOME_ARM, limbs_of
 
-_ANYTHING = ("wave your right hand", "clap your hands")
-"""Commands for a request of anything except a denied command."""
+_ANYTHING = ("wave your right hand", "clap your hands", "nod your head")
+"""Commands for a request of anything except a denied command; the last one also where all of them are denied."""
 _SAME_MEANING = {
     "wave your right hand": ("bow politely", "nod your head", "salute"),
     "clap your hands": ("give a thumbs up with your right hand", "cheer with both arms", "nod your head"),
@@ -37,7 +37,8 @@ def anything_but(denied: tuple[str, ...]) -> str:
     >>> anything_but(("wave",)), anything_but(("bow",))
     ('clap your hands', 'wave your right hand')
     """
-    return next(command for command in _ANYTHING if command.split()[0] not in _verbs(denied))
+    verbs = _verbs(denied)
+    return next((command for command in _ANYTHING if command.partition(" ")[0] not in verbs), _ANYTHING[-1])
 
 
 def otherwise(command: str, said: str, denied: tuple[str, ...]) -> str:
