@@ -124,6 +124,7 @@ def test_a_text_goes_on_from_what_is_played(run):
             robot.say("clap your hands", prefix_s=0.4, when="after")
 
 
+@pytest.mark.long
 def test_poses_are_met_in_time(run):
     with run.client() as robot:
         robot.gesture("raise_left", hold=True)

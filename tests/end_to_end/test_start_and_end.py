@@ -94,6 +94,7 @@ def test_a_robot_file_with_a_wrong_key_names_file_key_and_allowed(tmp_path):
     assert str(path) in message and "colour" in message and "allowed" in message
 
 
+@pytest.mark.long
 def test_a_missing_tty():
     message = refused("--bus", "dxl:///dev/ttyNOTHERE?baud=1000000")
     assert "/dev/ttyNOTHERE" in message

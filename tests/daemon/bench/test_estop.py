@@ -45,6 +45,7 @@ def test_disturbed_daemons_give_every_figure_and_lose_no_estop(names):
     assert set(disturbances["bus_killed"]["from_back"]) == TIMES
 
 
+@pytest.mark.long
 @pytest.mark.timeout(240)
 @pytest.mark.realtime
 def test_an_estop_that_does_not_come_through_is_lost(monkeypatch, capsys):

@@ -71,6 +71,7 @@ def test_from_any_pose_it_arms_and_parks_off_itself(name, seed):
         assert_never_in_itself(r)
 
 
+@pytest.mark.long
 @settings(max_examples=examples(10), deadline=None)
 @given(st.sampled_from(ROBOTS), seeds, st.lists(st.sampled_from(["jump", "noise", "stop", "wait", "park"]), max_size=6))
 def test_whatever_it_is_sent_it_is_led_to_park_off_itself(name, seed, actions):

@@ -96,6 +96,7 @@ def test_the_servos_receive_the_same_goals_bit_for_bit(session, log_file):
             )
 
 
+@pytest.mark.long
 def test_twice_replayed_is_the_same_again(log_file):
     assert play(read_log(log_file))[2] == play(read_log(log_file))[2]
 
@@ -122,6 +123,7 @@ def test_a_log_that_breaks_limits_is_held_back_by_the_gate(log_file):
     assert sim.audit.report()["violations"] == 0
 
 
+@pytest.mark.long
 def test_behind_cycles_the_log_lost_the_robot_makes_a_new_start(session, tmp_path):
     log = read_log(write(tmp_path / "gap.mcap", *session, drop=range(120, 140)))
     result, sim, _ = play(log)
@@ -129,6 +131,7 @@ def test_behind_cycles_the_log_lost_the_robot_makes_a_new_start(session, tmp_pat
     assert sim.audit.report()["violations"] == 0
 
 
+@pytest.mark.long
 def test_a_log_cut_off_is_played_as_far_as_it_goes(log_file):
     data = log_file.read_bytes()
     log_file.write_bytes(data[: len(data) * 3 // 5])

@@ -237,6 +237,7 @@ def test_random_sequences_keep_to_the_model(seed, tmp_path):
         daemon.close()
 
 
+@pytest.mark.long
 def test_a_stop_of_a_limp_robot_is_over_once_it_is_armed():
     """It was told as holding, and idle movements never began: the stop of before counted for what came after."""
     daemon = RunningDaemon()

@@ -22,6 +22,7 @@ from sim.clock import VirtualClock
 from sim.faults import Fault, FaultSchedule
 from sim.port import SimPort
 from tests.support.rig import swing
+from tests.support.sizes import few_and_long
 
 STATES = ("limp", "arming", "holding", "playing", "stopping", "parking", "fault")
 
@@ -123,7 +124,7 @@ def kill() -> None:
 
 @pytest.mark.parametrize("kind", [BusRequest.ESTOP, BusRequest.ESTOP_HOLD])
 @pytest.mark.parametrize("state", STATES)
-@pytest.mark.parametrize("steps", [1, 2, 3, 8])
+@pytest.mark.parametrize("steps", few_and_long([2], [1, 3, 8]))
 def test_an_e_stop_is_carried_out_by_the_next_process_after_any_kill(state, steps, kind):
     """Killed in a motion, an e-stop given within a second was acknowledged and lost, 4 of 4; all servos kept their torque."""
     with robot() as r:
@@ -146,7 +147,7 @@ def test_an_e_stop_is_carried_out_by_the_next_process_after_any_kill(state, step
 
 
 @pytest.mark.parametrize("state", STATES)
-@pytest.mark.parametrize("killed_again_at", [None, 2, 3, 40])
+@pytest.mark.parametrize("killed_again_at", few_and_long([None, 3], [2, 40]))
 def test_an_e_stop_without_a_process_cuts_torque_before_verification(state, killed_again_at):
     with robot() as r:
         r.start(after_loss=False)
