@@ -8,8 +8,10 @@ from mmm_core.language.at_once import base_of
 from mmm_core.language.ellipsis import OTHER
 from mmm_core.language.limbs import ARMS, HEAD, SOME_ARM, limbs_of
 
-_ANYTHING = ("wave your right hand", "clap your hands", "nod your head")
-"""Commands for a request of anything except a denied command; the last one also where all of them are denied."""
+_ANYTHING = (
+    "wave your right hand", "clap your hands", "nod your head", "bow politely", "shrug your shoulders", "salute", "stand upright"
+)  # fmt: skip
+"""Commands for a request of anything except a denied command; the last one also where all others are denied."""
 _SAME_MEANING = {
     "wave your right hand": ("bow politely", "nod your head", "salute"),
     "clap your hands": ("give a thumbs up with your right hand", "cheer with both arms", "nod your head"),

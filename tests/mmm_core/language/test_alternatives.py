@@ -23,6 +23,7 @@ def said(text: str) -> str:
         ("show me any greeting except a bow", "wave your right hand | not: a bow"),
         ("do anything but wave", "clap your hands | not: wave"),
         ("do anything but wave or clap", "nod your head | not: wave or clap"),
+        ("do anything but wave, clap or nod", "bow politely | not: wave or clap or nod"),
         ("not left, the other way", "right | not: left"), ("lean, but not forward, the opposite", "lean back | not: forward"),
         ("not a nod, the opposite", "shake your head | not: a nod"),
         ("take your right hand instead of your left to point up", "point up with your right hand | not: the left"),
