@@ -22,7 +22,6 @@ from mcap.reader import make_reader
 from mmm_core.model.tokens import pack_ids
 from tests.support.harness import RunningDaemon
 from tests.support.shipped import shipped_engine
-from tests.support.sizes import few_and_long
 
 EXAMPLES = Path(__file__).parents[2] / "docs" / "examples"
 TIMEOUT_S = 60.0
@@ -148,7 +147,8 @@ def test_poses_that_nobody_taught_are_named(daemon: RunningDaemon) -> None:
     assert done.returncode == 1 and "arm_out" in done.stdout and "your own gestures: none" in done.stdout
 
 
-@pytest.mark.parametrize("recording", few_and_long([True], [False]))
+@pytest.mark.long
+@pytest.mark.parametrize("recording", [False, True])
 def test_tokens_of_a_motion(recording: bool, tmp_path: Path) -> None:
     """Tokens of a generated motion are its own; a recording of joints alone is encoded."""
     motion = shipped_engine().generate("clap three times", seed=7).motion

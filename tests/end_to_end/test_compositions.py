@@ -139,6 +139,7 @@ def test_poses_are_met_in_time(run):
         assert caught.value.code == "bad_keyframes"
 
 
+@pytest.mark.long
 def test_an_edit_of_one_arm_moves_that_arm_and_a_bad_one_says_why(run):
     with run.client() as robot:
         first = robot.gesture("wave_right")

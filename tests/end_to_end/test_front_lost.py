@@ -30,7 +30,8 @@ pytestmark = [pytest.mark.timeout(180), pytest.mark.realtime]
 @pytest.mark.parametrize(
     "states",
     [
-        pytest.param(("moving", "estop"), id="two"),
+        pytest.param(("moving",), id="one"),
+        pytest.param(("moving", "estop"), id="two", marks=pytest.mark.long),
         pytest.param(("idle", "moving", "holding", "parking"), id="moving on", marks=pytest.mark.soak),
         pytest.param(("fault", "limp", "arming", "estop"), id="other", marks=pytest.mark.soak),
     ],

@@ -51,7 +51,7 @@ def parts(name: str) -> tuple[RobotModel, JointServoMap, TurnWatch, SafetyLimite
     return robot, ticks, TurnWatch(robot, ticks, bus), SafetyLimiter(robot)
 
 
-@pytest.mark.parametrize("name", [*list_robots(), "paired"])
+@pytest.mark.parametrize("name", few_and_long(["reference", "toddlerbot", "reachy_2021", "paired"], list_robots()))
 @given(data=st.data())
 @settings(max_examples=examples(150), deadline=None)
 def test_the_first_goal_is_the_tick_that_was_read_or_arming_is_refused(

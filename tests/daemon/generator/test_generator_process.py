@@ -39,6 +39,7 @@ def test_the_front_holds_no_torch():
     assert result.stdout.strip() == "False"
 
 
+@pytest.mark.long
 @needs_model
 def test_the_process_serves_the_shipped_model_and_ends_with_its_parent(endpoint):
     process = subprocess.Popen(

@@ -45,6 +45,7 @@ def vectors(evaluator: Evaluator, clips: list[Clip], states: CaptionStates, n: i
     return texts, evaluator.motions([torch.from_numpy(c.features) for c in clips]).numpy()
 
 
+@pytest.mark.long
 def test_texts_find_their_motions_and_others_move_away(tmp_path: Path) -> None:
     """Far from done after so few steps, and far from chance (1 in 8)."""
     texts, motions = vectors(*trained(N, 100, tmp_path), N)
