@@ -19,7 +19,8 @@ _GESTURES = (
     "(?:waves?|nods?|bows?|claps?|claps|shrugs?|hugs?|salutes?|leans?|tilts?|punch(?:es)?|stretch(?:es)?|circles?|shakes?|turns?|"
     "movements?|motions?|gestures?|steps?|kisses|kiss|pats?|taps?|knocks?|swings?|strokes?|bends?|twists?|sways?|beckons?|"
     "head ?shakes?|applause|greeting|handshakes?|throws?|jabs?|hooks?|pumps?|cheers?|yawns?|points?|dips?|flaps?|sweeps?|arcs?|"
-    "glances?|looks?|rolls?|presses|press|push(?:es)?|pulls?|raises?|lifts?)"
+    "glances?|looks?|rolls?|presses|press|push(?:es)?|pulls?|raises?|lifts?|stirs?|scratch(?:es)?|wipes?|chops?|flicks?|rubs?|"
+    "squeezes?|peeks?|tugs?|heaves?|toss(?:es)?|swats?|slaps?|thumps?|spins?|wiggles?|waggles?|nudges?|grabs?)"
 )
 """Nouns of gestures that an adjective of size may precede."""
 _VERY = r"(?:(?:ever so|oh so|very|really|real|dead|proper|bloody|insanely|crazy|ridiculously|painfully|super|extremely|so|incredibly|ultra|extra|terribly|awfully|quite|pretty|rather|a bit|a little|as|nice and|oh so|much|(?<!the )(?<!your )(?<!this )(?<!that )way) )*"

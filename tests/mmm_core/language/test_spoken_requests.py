@@ -30,6 +30,11 @@ from mmm_core.language.reading import read
         ("turn your head so that you can see the lady on your left", "turn your head to the left"),
         ("let your shoulders say that you have no clue", "shrug your shoulders"),
         ("look around the room, first to one side and then to the other", "look to the left; look to the right"),
+        # a robot that is spoken of
+        ("the robot should clap its left hand to its hip", "clap its left hand to its hip"), ("tell the robot to nod", "nod"),
+        ("I want the robot to bow", "bow"), ("can the robot wave?", "wave"), ("the robot must do the robot", "do the robot"),
+        ("a dancing robot", "a dancing robot"), ("can the robot see me", "can the robot see me"), ("wave, robot", "wave"),
+        ("show me a quick stir, swiftly", "show me a stir (1.6 times as fast)"),
         # and what looks like these
         ("nod yes and clap", "nod yes + clap"), ("shout yes and pump your fist", "shout yes and pump your fist"),
         ("put your hand on your head, not on the table", "put your hand on your head"),
