@@ -151,7 +151,6 @@ COMMANDS = st.lists(
 )
 
 
-@pytest.mark.long
 @settings(max_examples=4, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(COMMANDS)
 def test_each_ends_once_and_only_by_what_was_accepted_and_is_newer(talk, wanted):
