@@ -33,7 +33,7 @@ from daemon.state.ledger import Entry, Ledger
 from daemon.state.machine import RobotState
 from daemon.state.replies import NotPlayableError, as_failure, ending, failed
 from daemon.wire.events import Cancelled, Failed, Progress, Rejected
-from daemon.wire.requests import Play, tag_of
+from daemon.wire.requests import Play
 from daemon.wire.status import CurrentCommand
 from retarget.errors import RetargetError
 
@@ -97,8 +97,7 @@ class Playback:
             finally:
                 self._telling = False
                 if before is not None and entry is not None:
-                    by = f"{tag_of(entry.request)} {entry.id}"
-                    self._ledger.emit(before, Cancelled(plan_id=plan_id_before, by=by))
+                    self._ledger.emit(before, Cancelled(plan_id=plan_id_before, by=entry.named))
             player.begun()
             return True
 

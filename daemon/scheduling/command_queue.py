@@ -11,7 +11,7 @@ from __future__ import annotations
 import asyncio
 import time
 from collections import OrderedDict
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from daemon.host.clock import clock_id
 from daemon.state.ledger import Entry
@@ -38,6 +38,7 @@ class QueuedCommand:
         cancelled_by: cause of its end; empty before.
         committing: whether it is now taking over, which is not interrupted.
         turn: whether its turn or its time has come.
+        overtook: entries of the commands that it ends, which are told so once it is accepted.
     """
 
     entry: Entry
@@ -46,6 +47,7 @@ class QueuedCommand:
     cancelled_by: str = ""
     committing: bool = False
     turn: bool = False
+    overtook: list[Entry] = field(default_factory=list[Entry])
 
     @property
     def when(self) -> str:
@@ -167,6 +169,13 @@ class CommandQueue:
         """Remove a command that is played or has ended."""
         if pending in self._all:
             self._all.remove(pending)
+
+    def withdraw(self, pending: QueuedCommand, by: str) -> None:
+        """Remove a command that `by` ends, and its task with it."""
+        pending.cancelled_by = by
+        self.remove(pending)
+        if not pending.committing and pending.task is not None:
+            pending.task.cancel()
 
     def renew(self, pending: QueuedCommand) -> None:
         """Move a command whose time has come behind all others: it is the newest."""

@@ -34,11 +34,12 @@ from daemon.state.replies import (
     failed,
     lease_held,
     lease_silent,
+    queue_full,
     refusal,
     refused_later,
 )
-from daemon.wire.events import Ack, Cancelled, Failed, Progress, Rejected
-from daemon.wire.requests import Lease, tag_of
+from daemon.wire.events import Ack, Cancelled, Failed, Progress
+from daemon.wire.requests import Lease
 from daemon.wire.status import CurrentCommand
 from retarget.errors import RetargetError
 
@@ -93,12 +94,9 @@ class Scheduler:
         pending = QueuedCommand(entry, self.planner.epoch)
         if self._waiting.full and entry.request.when == "now":  # a `now` always gets in; one being generated gives way
             if (oldest := self._waiting.oldest_undecided) is not None:
-                self._drop(oldest, _named(entry))
+                self._drop(oldest, entry.named)
         elif self._waiting.full:
-            asked, allowed = f"{tag_of(entry.request)} {entry.request.when}", f"at most {MOST_WAITING} commands waiting"
-            do = "wait until some have been played, or cancel some"
-            event = Rejected(code="queue_full", asked=asked, found=f"{len(self._waiting)}", allowed=allowed, do=do)
-            self._ledger.emit(entry, event)
+            self._ledger.emit(entry, queue_full(entry.request, len(self._waiting), MOST_WAITING))
             return
         self._waiting.add(pending)
         pending.task = asyncio.create_task(self._perform(pending))
@@ -225,13 +223,17 @@ class Scheduler:
 
     def _overtake(self, newest: QueuedCommand) -> None:
         for pending in self._waiting.overtaken_by(newest):
-            self._drop(pending, _named(newest.entry))
+            self._waiting.withdraw(pending, newest.entry.named)
+            newest.overtook.append(pending.entry)
+        if newest.entry.accepted:
+            self._tell_overtaken(newest)
+
+    def _tell_overtaken(self, newest: QueuedCommand) -> None:
+        for entry in newest.overtook:
+            self._ledger.emit(entry, ending(0, newest.entry.named, None))
 
     def _drop(self, pending: QueuedCommand, by: str, failure: Failed | None = None) -> None:
-        pending.cancelled_by = by
-        self._waiting.remove(pending)
-        if not pending.committing and pending.task is not None:
-            pending.task.cancel()
+        self._waiting.withdraw(pending, by)
         self._ledger.emit(pending.entry, ending(0, by, failure))
 
     async def _perform(self, pending: QueuedCommand) -> None:
@@ -244,7 +246,7 @@ class Scheduler:
             plan_id = self.planner.new_plan_id()
             self._sources.kept.number(entry.id, plan_id)
             if not self._begins_now(pending):
-                await self._accept(entry, prepared, plan_id)
+                await self._accept(pending, prepared, plan_id)
             await self._turns.come(pending, self._overtake)
             arming = Progress(plan_id=plan_id, stage="arming")
             await self._turns.until_armed(entry, lambda: self._ledger.emit(entry, arming))
@@ -258,11 +260,13 @@ class Scheduler:
             event = failed("retarget", str(error), "a motion that fits the robot", "say it in other words")
             self._ledger.emit(entry, event)
         except asyncio.CancelledError:
-            self._ledger.emit(entry, Cancelled(plan_id=0, by=pending.cancelled_by or "shutdown"))
+            if not pending.cancelled_by:  # else whoever cancelled it tells so
+                self._ledger.emit(entry, Cancelled(plan_id=0, by="shutdown"))
         except Exception as error:  # one command must not end the daemon
             log.exception("playing %r failed", entry.request.words)
             self._ledger.emit(entry, failed("internal", str(error), "", "see the daemon's log"))
         finally:
+            self._tell_overtaken(pending)
             self._waiting.remove(pending)
 
     def _begins_now(self, pending: QueuedCommand) -> bool:
@@ -270,9 +274,11 @@ class Scheduler:
         is_now = pending.entry.request.when == "now" and not self._waiting.may_be_overtaken(pending)
         return is_now and self.follower.can_take_over
 
-    async def _accept(self, entry: Entry, prepared: PreparedSource, plan_id: int) -> None:
+    async def _accept(self, pending: QueuedCommand, prepared: PreparedSource, plan_id: int) -> None:
+        entry = pending.entry
         if not (entry.accepted or entry.ended):
             self._ledger.emit(entry, await prepared.accepted(entry, plan_id))
+        self._tell_overtaken(pending)
 
     async def _take_over(self, pending: QueuedCommand, prepared: PreparedSource, plan_id: int) -> None:
         """Play the command from now on; the command played before ends in `cancelled`."""
@@ -282,7 +288,7 @@ class Scheduler:
 
         async def told() -> None:
             self._waiting.remove(pending)
-            await self._accept(entry, prepared, plan_id)
+            await self._accept(pending, prepared, plan_id)
 
         try:
             begun = await self._player.take_over(entry, prepared.score, plan_id, pending.epoch, alive, told)
@@ -291,8 +297,3 @@ class Scheduler:
             raise
         if not begun:
             self._ledger.emit(entry, Cancelled(plan_id=plan_id, by=pending.cancelled_by or self.halts.by or "stop"))
-
-
-def _named(entry: Entry) -> str:
-    """The `by` in the events of the commands that this one ends."""
-    return f"{tag_of(entry.request)} {entry.id}"

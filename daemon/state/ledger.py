@@ -76,6 +76,11 @@ class Entry:
         """Whether the command was accepted."""
         return any(isinstance(event, Accepted) for event in self.events)
 
+    @property
+    def named(self) -> str:
+        """The `by` in the events of the commands that this one ends."""
+        return f"{tag_of(self.request)} {self.id}"
+
     def keep(self, event: Event) -> None:
         """Remember an event for later askers; of scenes and lease events only the newest are kept."""
         if _any_number(event):

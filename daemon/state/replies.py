@@ -10,7 +10,7 @@ from daemon.generator.generated import GeneratorError
 from daemon.state.ledger import Entry
 from daemon.state.machine import CommandRefusedError
 from daemon.wire.events import Cancelled, Failed, Rejected
-from daemon.wire.requests import tag_of
+from daemon.wire.requests import Command, Lease, tag_of
 from daemon.wire.showing import in_words
 
 
@@ -83,3 +83,10 @@ def lease_silent(park_s: float, targets: int) -> Failed:
         code="lease_silent", asked="lease", found=f"no target for {park_s:g} s, after {targets}",
         allowed="targets at least as often as the lease says, or `release`", do="the robot parks; ask for a new lease",
     )  # fmt: skip
+
+
+def queue_full(request: Command | Lease, n_waiting: int, most: int) -> Rejected:
+    """The event for a command for which there is no place in the queue."""
+    asked, allowed = f"{tag_of(request)} {request.when}", f"at most {most} commands waiting"
+    do = "wait until some have been played, or cancel some"
+    return Rejected(code="queue_full", asked=asked, found=f"{n_waiting}", allowed=allowed, do=do)

@@ -261,7 +261,7 @@ def test_hours_of_faults_break_no_limit_and_a_person_arms_each_time(seed: int) -
         assert witness.stopped == [], "no servo stands still unnoticed"
         assert person.armed <= person.switched_on <= person.asked, "nobody else arms it"
         assert max(person.longest_out_s, person.out_s) < LONGEST_OUT_S, "each recovery was armed"
-        assert after[0] - before[0] < LEAK_BYTES and after[1] == before[1]
+        assert after[0] - before[0] < LEAK_BYTES and after[1] <= before[1], "memory or descriptors leak"
     finally:
         log.removeHandler(witness)
         log.propagate = True
