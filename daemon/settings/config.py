@@ -213,7 +213,7 @@ class DaemonConfig:
     queue_s: float = _setting(
         0.1, "seconds of setpoints kept ready in the bus process", low=0.02, high=0.3, is_flag=False
     )
-    state_rate_hz: float = _setting(20.0, "messages of `v1/state` in a second", low=1.0, high=200.0, is_flag=False)
+    state_rate_hz: float = _setting(25.0, "messages of `v1/state` in a second", low=1.0, high=200.0, is_flag=False)
     generate_timeout_s: float = _setting(
         10.0, "seconds after which a generator that does not answer has failed", low=0.1, high=600.0, is_flag=False
     )
