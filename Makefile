@@ -43,9 +43,16 @@ demo: setup
 # `make test` tries one cheap case of every promise, `make test-long` the others; .ci/run runs both (tests/support/sizes.py).
 test test-long soak: export PYTHONDONTWRITEBYTECODE =
 test-long: WHICH := -m 'long and not soak and not hardware'
-test test-long: setup
+define RUN_TESTS
 	$(BIN)/python -m pytest $(WHICH) -n 4 --dist loadfile --no-loadscope-reorder || \
 	$(BIN)/python -m pytest $(WHICH) --last-failed --last-failed-no-failures none --void-when-held-up -rs
+endef
+
+test: setup
+	$(RUN_TESTS)
+
+test-long: setup
+	$(RUN_TESTS)
 
 check: setup
 	$(BIN)/ruff format --check .

@@ -42,14 +42,14 @@ class IdleStyle:
     sway_deg: float
 
 
-MOODS = {"calm": IdleStyle(1.5, 6.0, 2.5, 1.0), "lively": IdleStyle(2.5, 16.0, 6.0, 2.2)}
+STYLES = {"calm": IdleStyle(1.5, 6.0, 2.5, 1.0), "lively": IdleStyle(2.5, 16.0, 6.0, 2.2)}
 
 
 class IdleSource(MotionSource):
     """Endless idle movements."""
 
     def __init__(self, style: str, seed: int = 0) -> None:
-        self._style = MOODS[style]
+        self._style = STYLES[style]
         self._phase = np.random.default_rng(seed).uniform(0, 2 * np.pi, (3, 3))
         self._frame = 0
         self._finishing = False

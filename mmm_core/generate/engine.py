@@ -118,7 +118,7 @@ class Engine(MotionModel):
             text: a command in English.
             seed: any integer from 0 to 2^31 - 1.
             seconds: length of the motion, at most 9.8; None lets the model choose.
-            candidates: motions generated at once, of which the likeliest is kept.
+            candidates: motions generated at once; the likeliest one is kept.
 
         Raises:
             GenerationError: seed, seconds or candidates out of range, or no seconds for a model without lengths.

@@ -163,10 +163,10 @@ class MotionGeneration:
         candidates = self._fill(command.states, [row] * n, seeds, settings, first)
         ids = candidates[0] if n == 1 else self._likeliest(command.states, candidates)
         count = self._counts[i]
-        many = None if count is None else repeated(self._engine, command, ids, count, settings.opening)
-        if count is not None and many is None:
-            return self._as_said(i, seeds[0])
-        return ids if many is None else many
+        if count is None:
+            return ids
+        many = repeated(self._engine, command, ids, count, settings.opening)
+        return self._as_said(i, seeds[0]) if many is None else many
 
     def _as_said(self, i: int, seed: int) -> Tensor:
         """(L, C) ids of a step of one command whose strokes cannot be repeated: the model makes as many as it can."""

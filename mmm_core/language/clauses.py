@@ -34,7 +34,7 @@ _THE_SAME = re.compile(
     r"(?:(?:do )?(?:the same|likewise|it|so|that)|one|another|another one|one more)\b(?: (?:with|using|for|on)\b|$)"
 )
 _ONCE_MORE = re.compile(r"once (?:more|again)|(?:one|another) more time|another time")
-"""What "and" may join to a command without a verb: "wave and once more"."""
+"""Pattern of words without a verb that "and" may join to a command: "wave and once more"."""
 _NOUN = re.compile(
     rf"(?:an?|another|{'|'.join(NUMBERS)}) (?:\w+ )?(?:nod|bow|wave|clap|shrug|salute|punch|jab|hook|uppercut|yawn|stretch|twist|head ?shake|cheer|hug)(?:e?s)?\b"
 )

@@ -21,7 +21,7 @@ def dealer(context: zmq.Context, endpoint: str, kind: int = zmq.DEALER) -> zmq.S
 
 
 def stamped(request: requests.Request) -> bytes:
-    """As the clients send it: with the time, so that a stop just before does not count against it."""
+    """A request as the clients encode it: its time is in it, so that a stop just before it does not end it."""
     stamp(request)
     return wire.encode(request)
 

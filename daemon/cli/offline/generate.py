@@ -78,7 +78,7 @@ def generate(
         bvh_names: its bones: mixamo or cmu as retargeting programs know them, in a T pose at rest; mmmd has our joints.
         batch: JSON lines of {"id", "text", "seed", "seconds"}: one .npz named by its id for each.
         story: JSON lines of {"text", "seconds"}: one motion with generated transitions, of any length.
-        candidates: motions made at once, of which the model's likeliest is kept. A story has one of each.
+        candidates: motions made at once; the one that the model finds likeliest is kept. A story has one motion of each scene.
         model: checkpoint; the shipped one when it is not given.
         threads: CPU threads.
         precision: of matrix products; int8 for the shipped model where the processor multiplies such integers (VNNI), else

@@ -1,4 +1,4 @@
-"""What ends a motion, over the front's sockets: stop, cancel, e-stop, torque off, park, and a text that means to stop."""
+"""A motion ends by a request on the front's sockets: stop, cancel, e-stop, torque off, park, or a text that means to stop."""
 
 from __future__ import annotations
 
@@ -109,7 +109,7 @@ def test_park_goes_limp_and_the_next_text_arms(robot, running):
 
 
 def test_the_word_stop_brakes_and_is_no_gesture(robot, running):
-    """As text it was taken for the gesture of a stop sign: the hand rose 0.7 m, and the voice assistant was told `done`."""
+    """The model took such a text for the gesture of a stop sign: the hand rose 0.7 m, and the voice assistant was told `done`."""
     thread, outcome = say_in_thread(robot, running, "wave", 4.0)
     with running.client() as other:
         said = other.say("please stop waving")

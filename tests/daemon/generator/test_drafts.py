@@ -54,7 +54,7 @@ def test_the_drafts_of_several_texts_come_before_their_motions(endpoint):
 
 
 def test_many_drafts_do_not_starve_the_motions(endpoint):
-    """Of so many texts at once the first motions come before the last drafts."""
+    """When many texts come at once, the first motions are made before the last drafts."""
     peer = KinematicGenerator(endpoint)
     came = []
 

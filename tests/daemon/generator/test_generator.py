@@ -1,4 +1,4 @@
-"""What the front makes of a generator that is silent, down, restarted, loading, or answers out of order."""
+"""The front stands a generator that is silent, down, restarted or loading, and answers that come out of order."""
 
 from __future__ import annotations
 

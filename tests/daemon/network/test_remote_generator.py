@@ -20,7 +20,7 @@ pytestmark = pytest.mark.realtime
 
 @pytest.mark.long
 def test_a_daemon_without_torch_uses_a_remote_generator_over_curve(tmp_path):
-    """As on a small board: torch cannot be imported; the generator is another process, behind keys."""
+    """The daemon runs as on a small board: it cannot import torch, and the generator is another process, behind keys."""
     without = tmp_path / "without_torch"
     without.mkdir()
     (without / "torch.py").write_text("raise ImportError('torch is not installed here')")

@@ -7,7 +7,7 @@ import pytest
 
 from daemon.playback.sources.clip_source import ClipSource, in_full
 from daemon.poses.cycles import Marks, after_loop, closed, find_hold, find_loop, marks_of
-from daemon.poses.idle import MOODS, IdleSource, looking
+from daemon.poses.idle import STYLES, IdleSource, looking
 from daemon.poses.pose_sequence import PoseSequence, distance_deg, joined, posture_of, standing
 from daemon.wire.requests import Say
 from mmm_core.motion.motion import FPS
@@ -167,7 +167,7 @@ def test_marks_can_be_given():
     assert marks_of(WAVE) == Marks(find_loop(WAVE), find_hold(WAVE))
 
 
-@pytest.mark.parametrize("style", MOODS)
+@pytest.mark.parametrize("style", STYLES)
 def test_idle_movements_are_small_slow_continuous_and_never_end(style):
     score = IdleSource(style, seed=4)
     p = joined([score.next()[0] for _ in range(60)])

@@ -54,7 +54,7 @@ def test_a_span_outside_its_recording_is_named(tmp_path: Path) -> None:
 
 
 def test_further_recordings_take_the_place_of_their_older_copies(tmp_path: Path) -> None:
-    """Of a recording that both folders hold under one name, or under a benchmark's name, the copy in `more` is read."""
+    """Where both folders hold a recording, under one name or under a benchmark's name, the copy in `more` is read."""
 
     def write(path: Path, trials: dict[str, str], **more: str) -> None:
         path.mkdir(exist_ok=True)
@@ -127,7 +127,7 @@ def test_recordings_may_be_files_of_any_kind_that_is_read(tmp_path: Path) -> Non
 
 
 def test_clips_are_cut_from_bvh_files_where_there_is_no_array(tmp_path: Path) -> None:
-    """The same person of another size, 30 cm higher: on the common body, on the floor, followed by the mirror image."""
+    """A person of another size, 30 cm higher, is read on the common body and on the floor, followed by the mirror image."""
     made = synthesise_spec(ClipSpec((Gesture("wave", "right", 3),)), np.random.default_rng(0))
     assert made is not None
     r, n, f32 = recover(made.features), len(made.features), np.float32

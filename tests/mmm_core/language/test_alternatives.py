@@ -1,4 +1,4 @@
-"""What is done in place of what is denied: another greeting, the opposite, the other hand, the rest of the body."""
+"""A denied act is replaced by another greeting, the opposite, the other hand or the rest of the body."""
 
 from __future__ import annotations
 

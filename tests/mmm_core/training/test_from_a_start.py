@@ -24,7 +24,7 @@ pytestmark = pytest.mark.usefixtures("quick_parts")
 
 @pytest.mark.long
 def test_a_recipe_with_more_codes_refines_those_of_its_start(tmp_path: Path, finished: Finished) -> None:
-    """The refined model is made once; a run that is started again goes on from it as it is."""
+    """The refined model is made once; a run that is started again goes on from that model."""
     more, run = small(tmp_path / "more.toml"), tmp_path / "more"
     start = f'start = "{finished.model}"\n'
     more.write_text(start + more.read_text().replace("n_codes = 16", "n_codes = 24"))
@@ -40,7 +40,7 @@ def test_a_recipe_with_more_codes_refines_those_of_its_start(tmp_path: Path, fin
 def test_a_recipe_goes_on_from_a_finished_model(
     tmp_path: Path, finished: Finished, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """The tokenizer, decoder and all, is as it was; the transformer has its weights and goes on from there."""
+    """Tokenizer and decoder stay as in the start; the transformer has the start's weights and is trained further."""
     start = tmp_path / "model.safetensors"
     shutil.copy(finished.model, start)
     old = load_model(start)
