@@ -14,7 +14,7 @@ import zmq
 from daemon.front.subscriptions import BURST, COST_OF_OTHERS, MOST_TOPIC_BYTES, RATE_HZ, Subscriptions
 from daemon.wire import codec as wire
 from tests.attacks.zmtp import RawPeer, connected, frame
-from tests.support.harness import RunningDaemon
+from tests.support.harness import RunningDaemon, running_daemon
 from tests.support.sizes import few_and_long
 
 pytestmark = [pytest.mark.timeout(180), pytest.mark.realtime]
@@ -25,13 +25,8 @@ MOST_GROWTH_BYTES = 500 << 20
 
 @pytest.fixture(scope="module", params=few_and_long(["tcp"], ["ipc"]))
 def running(request):
-    daemon = RunningDaemon(tcp=request.param == "tcp")
-    try:
-        with daemon.until_ready().armed():
-            yield daemon
-        assert daemon.terminate() == 0 and "Traceback" not in daemon.said, daemon.said
-    finally:
-        daemon.close()
+    with running_daemon(tcp=request.param == "tcp") as daemon, daemon.armed():
+        yield daemon
 
 
 def memory_bytes(daemon: RunningDaemon) -> int:

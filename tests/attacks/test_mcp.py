@@ -7,18 +7,15 @@ import subprocess
 
 import pytest
 
-from tests.support.harness import MMMD, RunningDaemon
+from tests.support.harness import MMMD, running_daemon
 
 pytestmark = [pytest.mark.timeout(120), pytest.mark.realtime]
 
 
 @pytest.fixture(scope="module")
 def running():
-    daemon = RunningDaemon()
-    try:
-        yield daemon.until_ready()
-    finally:
-        daemon.close()
+    with running_daemon() as daemon:
+        yield daemon
 
 
 def tool(name: bytes, arguments: bytes = b"{}", call_id: bytes = b"1") -> bytes:

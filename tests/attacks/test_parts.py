@@ -10,7 +10,7 @@ import zmq
 from daemon.wire import codec as wire
 from daemon.wire import events as ev
 from tests.attacks.zmtp import RawPeer, frame
-from tests.support.harness import RunningDaemon
+from tests.support.harness import running_daemon
 
 pytestmark = [pytest.mark.timeout(120), pytest.mark.realtime]
 MANY = 100_000
@@ -20,13 +20,8 @@ STANDS = ("idle", "holding")
 
 @pytest.fixture(scope="module")
 def running():
-    daemon = RunningDaemon(tcp=True)
-    try:
-        with daemon.until_ready().armed():
-            yield daemon
-        assert daemon.terminate() == 0 and "Traceback" not in daemon.said
-    finally:
-        daemon.close()
+    with running_daemon(tcp=True) as daemon, daemon.armed():
+        yield daemon
 
 
 @pytest.fixture

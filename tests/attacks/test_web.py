@@ -22,7 +22,7 @@ from daemon.scheduling.command_queue import SHADOW_S
 from daemon.view.relay import MOST_KEPT, Reader
 from daemon.view.server import MOST_BYTES
 from daemon.view.web_state import BURST, MOST_SOCKETS
-from tests.support.harness import RunningDaemon
+from tests.support.harness import RunningDaemon, running_daemon
 
 pytestmark = pytest.mark.realtime
 
@@ -55,14 +55,8 @@ class Web:
 
 @pytest.fixture(scope="module")
 def web() -> Iterator[Web]:
-    daemon = RunningDaemon("--http", "127.0.0.1:0")
-    try:
-        yield Web(daemon.until_ready())
-        assert daemon.terminate() == 0
-        audit = json.loads(daemon.audit.read_text())
-        assert audit["violations"] == 0 and audit["self_contacts"] == 0
-    finally:
-        daemon.close()
+    with running_daemon("--http", "127.0.0.1:0") as daemon:
+        yield Web(daemon)
 
 
 def test_a_text_and_a_stop_by_one_post_each(web: Web) -> None:

@@ -20,7 +20,7 @@ from xml.etree import ElementTree
 import pytest
 
 from tests.support import ros_stand_in
-from tests.support.harness import MMMD, RunningDaemon
+from tests.support.harness import MMMD, RunningDaemon, running_daemon
 
 PACKAGES = Path(__file__).parents[2] / "docs" / "examples" / "ros2"
 BRIDGE, INTERFACES = PACKAGES / "mmmd_bridge", PACKAGES / "mmmd_interfaces"
@@ -115,11 +115,8 @@ def test_the_launch_file_names_what_there_is() -> None:
 
 @pytest.fixture(scope="module")
 def daemon():
-    running = RunningDaemon()
-    try:
-        yield running.until_ready()
-    finally:
-        running.close()
+    with running_daemon() as running:
+        yield running
 
 
 @pytest.fixture

@@ -20,7 +20,7 @@ import pytest
 from mcap.reader import make_reader
 
 from mmm_core.model.tokens import pack_ids
-from tests.support.harness import RunningDaemon
+from tests.support.harness import RunningDaemon, running_daemon
 from tests.support.shipped import shipped_engine
 
 EXAMPLES = Path(__file__).parents[2] / "docs" / "examples"
@@ -33,11 +33,10 @@ def daemon(tmp_path_factory: pytest.TempPathFactory) -> Iterator[RunningDaemon]:
     """A daemon with HTTP that records into `daemon.log`, which is whole once it has ended."""
     log = tmp_path_factory.mktemp("log") / "run.mcap"
     options = ("--http", "127.0.0.1:0", "--log", str(log))
-    running = RunningDaemon(*options, robot="reference")  # the notebook takes the rate of the robot of that name
-    try:
-        yield running.until_ready()
-    finally:
-        running.close()
+    with running_daemon(
+        *options, robot="reference"
+    ) as running:  # the notebook takes the rate of the robot of that name
+        yield running
 
 
 @pytest.fixture

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import os
 import signal
 import time
@@ -15,7 +14,7 @@ from daemon.wire import events as ev
 from daemon.wire.requests import KeyPoseOf, Say, SceneOf, Story
 from mmm_core.inference.checkpoint import MODEL_FILE
 from tests.end_to_end.test_start_and_end import child_pid
-from tests.support.harness import RATE_HZ, RunningDaemon, plays_well
+from tests.support.harness import RATE_HZ, plays_well, running_daemon
 from tests.support.robot_states import STAYS, bring_to, within
 from tests.support.shipped import loaded_once
 
@@ -30,15 +29,9 @@ pytestmark = [
 def run(tmp_path_factory):
     """The tests of this module share a daemon; its audit must be clean at the end."""
     motions = tmp_path_factory.mktemp("motions")
-    daemon = RunningDaemon("--motions", str(motions), model=True)
-    daemon.motions = motions
-    try:
-        yield daemon.until_ready()
-        assert daemon.terminate() == 0
-        audit = json.loads(daemon.audit.read_text())
-        assert audit["goals"] > 0 and audit["violations"] == 0 and audit["self_contacts"] == 0
-    finally:
-        daemon.close()
+    with running_daemon("--motions", str(motions), model=True) as daemon:
+        daemon.motions = motions
+        yield daemon
 
 
 @pytest.fixture(autouse=True)

@@ -6,6 +6,7 @@ import atexit
 import contextlib
 import functools
 import io
+import json
 import os
 import re
 import shutil
@@ -17,6 +18,7 @@ import tempfile
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import Any
 
 from daemon.cli import main
 from daemon.client import Client, NoAnswerError
@@ -164,6 +166,26 @@ class RunningDaemon:
         if self.peer is not None:
             self.peer.close()
         self._folder.cleanup()
+
+
+@contextlib.contextmanager
+def running_daemon(*options: str, **how: Any) -> Iterator[RunningDaemon]:
+    """A daemon that answers; after the block it must end well, without a traceback, having moved the robot within every limit.
+
+    Args:
+        options: of `mmmd run`.
+        how: further arguments of `RunningDaemon`.
+    """
+    daemon = RunningDaemon(*options, **how)
+    try:
+        yield daemon.until_ready()
+        assert daemon.terminate() == 0, daemon.said
+        assert "Traceback" not in daemon.said, daemon.said
+        if daemon.audit.exists():  # written where the servos are in the bus process
+            report = json.loads(daemon.audit.read_text())
+            assert report["goals"] > 0 and report["violations"] == 0 and report["self_contacts"] == 0, report
+    finally:
+        daemon.close()
 
 
 def slow_reference() -> str:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import json
 import math
 import threading
 import time
@@ -12,7 +11,7 @@ from collections.abc import Iterator, Sequence
 from daemon.client import Client
 from daemon.client.streams import Stream
 from daemon.wire import events as ev
-from tests.support.harness import RunningDaemon
+from tests.support.harness import RunningDaemon, running_daemon
 
 PARK_S, LIMP_S = 2.0, 0.4
 PERIOD_S = 0.02
@@ -20,16 +19,9 @@ PERIOD_S = 0.02
 
 @contextlib.contextmanager
 def leasing_daemon() -> Iterator[RunningDaemon]:
-    """A running daemon; at its end the audit of everything that was sent to its servos."""
-    daemon = RunningDaemon("--lease-park-s", str(PARK_S), "--lease-limp-s", str(LIMP_S))
-    try:
-        yield daemon.until_ready()
-        assert daemon.terminate() == 0
-        report = json.loads(daemon.audit.read_text())
-        assert report["goals"] > 0
-        assert report["violations"] == 0 and report["self_contacts"] == 0, report
-    finally:
-        daemon.close()
+    """A running daemon; at its end the audit of everything that was sent to its servos (`running_daemon`)."""
+    with running_daemon("--lease-park-s", str(PARK_S), "--lease-limp-s", str(LIMP_S)) as daemon:
+        yield daemon
 
 
 def wave(robot: Client, stream: Stream, seconds: float, rad: float = 0.3) -> int:

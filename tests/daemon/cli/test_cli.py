@@ -15,7 +15,7 @@ import pytest
 
 from daemon.cli.program import COMMANDS, main
 from mmm_core.inference.checkpoint import MODEL_FILE
-from tests.support.harness import RunningDaemon
+from tests.support.harness import running_daemon
 from tests.support.shipped import loaded_once
 
 pytestmark = pytest.mark.realtime
@@ -188,11 +188,8 @@ def _started_by(pid: int, command: str) -> int:
 
 @pytest.fixture(scope="module")
 def running():
-    daemon = RunningDaemon()
-    try:
-        yield daemon.until_ready()
-    finally:
-        daemon.close()
+    with running_daemon() as daemon:
+        yield daemon
 
 
 def test_the_session_of_the_readme(running):

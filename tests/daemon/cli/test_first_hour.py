@@ -22,7 +22,7 @@ from daemon.cli.tables import table_of
 from daemon.client import RefusedError
 from daemon.dynamixel.registers.models import MODELS
 from retarget.robot.loading import load_robot
-from tests.support.harness import MMMD, START_TIMEOUT_S, RunningDaemon
+from tests.support.harness import MMMD, START_TIMEOUT_S, RunningDaemon, running_daemon
 
 WITHOUT_TORCH = """\
 import sys
@@ -40,12 +40,8 @@ sys.meta_path[sys.meta_path.index(PathFinder)] = Without
 
 @pytest.fixture(scope="module")
 def running():
-    daemon = RunningDaemon()
-    try:
-        yield daemon.until_ready()
-        assert daemon.terminate() == 0
-    finally:
-        daemon.close()
+    with running_daemon() as daemon:
+        yield daemon
 
 
 def mmmd(*arguments: str, text: str | None = None) -> subprocess.CompletedProcess[str]:

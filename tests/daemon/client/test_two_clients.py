@@ -18,19 +18,15 @@ import pytest
 from daemon.client import AsyncClient, CancelledByError, Client, NoAnswerError, RefusedError
 from daemon.client.mcp import TOOLS, McpServer
 from daemon.settings.config import Endpoints
-from tests.support.harness import MMMD, RunningDaemon
+from tests.support.harness import MMMD, RunningDaemon, running_daemon
 
 pytestmark = [pytest.mark.timeout(90), pytest.mark.realtime]
 
 
 @pytest.fixture(scope="module")
 def running(tmp_path_factory):
-    daemon = RunningDaemon("--gestures", str(tmp_path_factory.mktemp("own")))
-    try:
-        yield daemon.until_ready()
-        assert daemon.terminate() == 0
-    finally:
-        daemon.close()
+    with running_daemon("--gestures", str(tmp_path_factory.mktemp("own"))) as daemon:
+        yield daemon
 
 
 def test_the_async_client_gives_up_in_time_where_nobody_is(tmp_path):

@@ -6,16 +6,13 @@ import pytest
 import zmq
 
 from tests.support.front_sockets import OPEN
-from tests.support.harness import RunningDaemon
+from tests.support.harness import running_daemon
 
 
 @pytest.fixture(scope="module")
 def running():
-    daemon = RunningDaemon()
-    try:
-        yield daemon.until_ready()
-    finally:
-        daemon.close()
+    with running_daemon() as daemon:
+        yield daemon
 
 
 @pytest.fixture

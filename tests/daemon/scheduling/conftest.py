@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import time
 
 import pytest
@@ -11,18 +10,13 @@ import zmq
 from daemon.client.errors import stamp
 from daemon.wire import codec as wire
 from daemon.wire import events as ev
-from tests.support.harness import RunningDaemon
+from tests.support.harness import running_daemon
 
 
 @pytest.fixture(scope="module")
 def running(tmp_path_factory):
-    daemon = RunningDaemon("--gestures", str(tmp_path_factory.mktemp("own")))
-    try:
-        yield daemon.until_ready()
-        assert daemon.terminate() == 0
-        assert json.loads(daemon.audit.read_text())["violations"] == 0
-    finally:
-        daemon.close()
+    with running_daemon("--gestures", str(tmp_path_factory.mktemp("own"))) as daemon:
+        yield daemon
 
 
 @pytest.fixture

