@@ -8,7 +8,7 @@ from functools import cache
 
 from mmm_core.language.count_words import NUMBERS
 from mmm_core.language.moods import MOODS, mood_of
-from mmm_core.language.word_tables import Rule, RuleTable, lines
+from mmm_core.language.word_tables import RuleTable, lines
 
 STRONGER = 1.25
 """Factor, on the logarithm, of "very" and the like before a word of manner."""
@@ -147,8 +147,7 @@ def _rules(table: str) -> RuleTable:
     """The rules of a table; the replacement text of each rule is its factor."""
     split = [line.partition(" ") for line in lines(table)]
     return RuleTable(
-        Rule(re.compile(rf"\b{_VERY}(?:{pattern.replace('@NOUN', _GESTURES)})(?![\w-])"), worth)
-        for worth, _, pattern in split
+        (rf"\b{_VERY}(?:{pattern.replace('@NOUN', _GESTURES)})(?![\w-])", worth) for worth, _, pattern in split
     )
 
 

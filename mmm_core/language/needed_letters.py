@@ -9,9 +9,9 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator
-from functools import lru_cache
-from re import _constants as ops  # type: ignore[attr-defined]  # the parser of `re` has no public name since Python 3.11
-from re import _parser  # type: ignore[attr-defined]
+from functools import cache, lru_cache
+from re import _compiler, _parser  # type: ignore[attr-defined]  # they have no public names since Python 3.11
+from re import _constants as ops  # type: ignore[attr-defined]
 from typing import Any
 
 MOST_ALTERNATIVES = 400
@@ -35,16 +35,25 @@ def letters_of(text: str) -> frozenset[str]:
     return frozenset(map("".join, zip(text, text[1:], text[2:], strict=False)))
 
 
-def needed_letters(pattern: re.Pattern[str]) -> frozenset[str]:
-    """Trigrams of a pattern: every text that matches has at least one of them; empty where the pattern requires none.
+def compiled(pattern: str, flags: int = 0) -> tuple[re.Pattern[str], frozenset[str]]:
+    """A compiled pattern and its trigrams; the pattern is parsed once for both, since parsing takes longest.
 
-    >>> sorted(needed_letters(re.compile("(?:clap|wave) your hands?")))
+    Args:
+        pattern: a regular expression.
+        flags: of `re`.
+
+    Returns:
+        the compiled pattern, which does not know its text; and trigrams of which every text that matches has at least one, empty
+        where the pattern requires none.
+
+    >>> sorted(compiled("(?:clap|wave) your hands?")[1])
     ['cla', 'wav']
     """
-    if pattern.flags & re.IGNORECASE:
-        return frozenset()
-    alternatives = _best(list(_needed(_parser.parse(pattern.pattern, pattern.flags & re.VERBOSE))))
-    return frozenset(map(_rarest, alternatives))
+    parsed = _parser.parse(pattern, flags)
+    found = _compiler.compile(parsed, flags)
+    if found.flags & re.IGNORECASE:
+        return found, frozenset()
+    return found, frozenset(map(_rarest, _best(list(_needed(parsed)))))
 
 
 def _needed(parts: Iterable[Any]) -> Iterator[frozenset[str]]:
@@ -80,6 +89,7 @@ def _best(found: list[frozenset[str]]) -> frozenset[str]:
     return min(usable, key=lambda each: sum(_share(_rarest(text)) for text in each), default=frozenset())
 
 
+@cache
 def _rarest(text: str) -> str:
     """The three neighbouring letters of a text that the fewest sentences contain."""
     return min((text[i : i + 3] for i in range(len(text) - 2)), key=_share)

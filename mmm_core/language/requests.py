@@ -10,7 +10,7 @@ from mmm_core.language.at_once import base_of
 from mmm_core.language.clause_patterns import SPEAKS_OF_AN_ACT
 from mmm_core.language.count_words import TIMES
 from mmm_core.language.limbs import is_gesture_verb
-from mmm_core.language.word_tables import LIMB, REMEMBERED, WAY, Rule, RuleTable, lines, pairs, replaced, substitutions
+from mmm_core.language.word_tables import LIMB, REMEMBERED, WAY, RuleTable, lines, pairs, replaced, substitutions
 
 _ACT = (
     r"(?:also |just |please |can you |could you )*(?:wave|nod|bow|clap|shrug|salute|point|punch|shake|cross|fold|raise|lift|look|lean|beckon|hug|stretch|twist|tilt|cheer|pray|scratch|rub|pat|"
@@ -74,8 +74,8 @@ def _frames() -> tuple[RuleTable, RuleTable]:
     patterns = [
         line.replace("@STORY", _STORY).replace("@ASKS", _ASKS).replace("@ACT", _ACT) for line in lines("frames")
     ]
-    front = RuleTable(Rule(re.compile(p)) for p in patterns if p.startswith("^"))
-    return front, RuleTable(Rule(re.compile(p)) for p in patterns if not p.startswith("^"))
+    front = RuleTable((p, "") for p in patterns if p.startswith("^"))
+    return front, RuleTable((p, "") for p in patterns if not p.startswith("^"))
 
 
 @lru_cache(maxsize=REMEMBERED)
@@ -172,21 +172,21 @@ def _said_again(bare: str) -> str:
 @cache
 def _openings() -> RuleTable:
     """Beginnings of social sentences."""
-    return RuleTable(Rule(re.compile(pattern.replace("@SO", _SO)), words) for pattern, words in pairs("openings"))
+    return RuleTable((pattern.replace("@SO", _SO), words) for pattern, words in pairs("openings"))
 
 
 @cache
 def _everyday() -> RuleTable:
     """Everyday phrases, one a line."""
     return RuleTable(
-        Rule(re.compile(pattern.replace("@ALL", _ALL).replace("@HERE", _HERE).replace("@SO", _SO)), words)
+        (pattern.replace("@ALL", _ALL).replace("@HERE", _HERE).replace("@SO", _SO), words)
         for pattern, words in pairs("everyday")
     )
 
 
 @cache
 def _sentences() -> RuleTable:
-    return RuleTable(Rule(re.compile(_spelt_out(pattern)), words) for pattern, words in pairs("sentences"))
+    return RuleTable((_spelt_out(pattern), words) for pattern, words in pairs("sentences"))
 
 
 def _spelt_out(pattern: str) -> str:

@@ -11,7 +11,7 @@ from functools import cache
 from itertools import pairwise
 
 from mmm_core.language.slips import without_slips
-from mmm_core.language.word_tables import WAY, Rule, RuleTable, pairs, replaced, substitutions
+from mmm_core.language.word_tables import WAY, RuleTable, pairs, replaced, substitutions
 
 _FILLER = r"(?:u+h+m*|u+m+|e+r+m*|h+m+|ah+|eh+)"
 _RESTART = re.compile(
@@ -103,7 +103,7 @@ def _taken_back(said: str) -> str:
 @cache
 def _corrections() -> RuleTable:
     said = ((pattern.replace("@WAY", f"({WAY})"), words) for pattern, words in pairs("corrections"))
-    return RuleTable(Rule(re.compile(pattern), words) for pattern, words in said)
+    return RuleTable(said)
 
 
 def _homophones(said: str) -> str:

@@ -10,7 +10,7 @@ from functools import cache
 from importlib.resources import files
 from typing import NamedTuple
 
-from mmm_core.language.needed_letters import letters_of, needed_letters
+from mmm_core.language.needed_letters import compiled, letters_of
 
 _FOLDER = files("mmm_core.language").joinpath("words")
 CORPUS_WORDS_FILE = _FOLDER.joinpath("corpus_words.txt")
@@ -66,22 +66,24 @@ class Rule(NamedTuple):
 
 
 class RuleTable:
-    """Rules in order; only rules whose required letters occur in a text are tried (`needed_letters`).
+    """Rules in order; only rules whose required letters occur in a text are tried (`needed_letters.py`).
 
     Args:
-        rules: compiled rules, in the order in which they are tried.
+        patterns: pattern and words of each rule, in the order in which they are tried.
     """
 
-    def __init__(self, rules: Iterable[Rule]) -> None:
-        self.rules = tuple(rules)
+    def __init__(self, patterns: Iterable[tuple[str, str]]) -> None:
+        rules: list[Rule] = []
         self._always: list[int] = []
         by_letters: defaultdict[str, list[int]] = defaultdict(list)
-        for number, rule in enumerate(self.rules):
-            needed = needed_letters(rule.pattern)
+        for number, (text, words) in enumerate(patterns):
+            pattern, needed = compiled(text)
+            rules.append(Rule(pattern, words))
             if not needed:
                 self._always.append(number)
             for letters in needed:
                 by_letters[letters].append(number)
+        self.rules = tuple(rules)
         self._by_letters, self._letters = dict(by_letters), frozenset(by_letters)
         self._last: tuple[str, list[int]] = "", self._found("")
 
@@ -101,7 +103,7 @@ class RuleTable:
 @cache
 def substitutions(name: str) -> RuleTable:
     """The lines `pattern => words` of a table, compiled."""
-    return RuleTable(Rule(re.compile(pattern), words) for pattern, words in pairs(name))
+    return RuleTable(pairs(name))
 
 
 def replaced(text: str, table: RuleTable) -> str:

@@ -11,10 +11,10 @@ import pytest
 
 from mmm_core.corpus.heldout import read_sentences
 from mmm_core.language.manner import _rules
-from mmm_core.language.needed_letters import letters_of, needed_letters
+from mmm_core.language.needed_letters import compiled, letters_of
 from mmm_core.language.requests import _everyday, _frames, _openings, _sentences
 from mmm_core.language.spelling import mended
-from mmm_core.language.word_tables import Rule, RuleTable, replaced, substitutions
+from mmm_core.language.word_tables import RuleTable, replaced, substitutions
 
 TABLES: dict[str, Callable[[], RuleTable]] = {
     "everyday": _everyday, "openings": _openings, "rewrites": lambda: substitutions("rewrites"),
@@ -46,19 +46,30 @@ def test_no_pattern_is_missed(name: str) -> None:
     ],
 )  # fmt: skip
 def test_the_letters_that_a_pattern_needs(pattern: str, needed: set[str]) -> None:
-    assert needed_letters(re.compile(pattern)) == needed
+    assert compiled(pattern)[1] == needed
+
+
+def test_a_pattern_is_what_re_compiles() -> None:
+    """It is compiled from what the parser found, which `re` does from a text alone."""
+    text = r"^(?P<who>you|we) (wave|nod)\b(?: twice)?$"
+    ours, theirs = compiled(text)[0], re.compile(text)
+    assert (ours.flags, ours.groups, ours.groupindex) == (theirs.flags, theirs.groups, theirs.groupindex)
+    for said in ("you wave twice", "we nod", "we wave often", "they nod"):
+        found, wanted = ours.search(said), theirs.search(said)
+        assert (found and found.groups()) == (wanted and wanted.groups())
+    assert ours.sub(r"\2 \1", "you wave twice") == theirs.sub(r"\2 \1", "you wave twice")
 
 
 def test_a_pattern_of_any_case_is_always_tried() -> None:
-    assert not needed_letters(re.compile("clap", re.IGNORECASE))
+    for pattern, flags in (("clap", re.IGNORECASE), ("(?i)clap", 0)):
+        found, needed = compiled(pattern, flags)
+        assert found.search("CLAP") and not needed
     assert letters_of("nods") == {"nod", "ods"}
 
 
 def test_rules_follow_each_other_in_the_order_of_the_table() -> None:
     """The words of one rule may be the pattern of a later one, and are not that of an earlier one."""
-    table = RuleTable(
-        [Rule(re.compile("nod"), "clap"), Rule(re.compile("wave"), "nod"), Rule(re.compile("nod"), "salute")]
-    )
+    table = RuleTable([("nod", "clap"), ("wave", "nod"), ("nod", "salute")])
     assert replaced("wave", table) == "salute"
     assert replaced("nod and wave", table) == "clap and salute"
 
