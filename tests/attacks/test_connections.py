@@ -23,9 +23,10 @@ STANDS = ("idle", "holding")
 MOST_GROWTH_BYTES = 500 << 20
 
 
-@pytest.fixture(scope="module", params=few_and_long(["tcp"], ["ipc"]))
+@pytest.fixture(scope="module", params=few_and_long(["mixed"], ["tcp", "ipc"]))
 def running(request):
-    with running_daemon(tcp=request.param == "tcp") as daemon, daemon.armed():
+    """A daemon with its sockets on tcp or ipc; mixed: `ctl` on ipc, the others on tcp."""
+    with running_daemon(tcp={"mixed": "but ctl", "tcp": True, "ipc": False}[request.param]) as daemon, daemon.armed():
         yield daemon
 
 
@@ -54,7 +55,7 @@ def crowd(endpoint: str, n: int):
 @pytest.mark.parametrize(
     ("running", "name", "n"),
     few_and_long(
-        [("tcp", "cmd", 1500), ("ipc", "ctl", 1500)],
+        [("mixed", "cmd", 1500), ("mixed", "ctl", 1500)],
         [("tcp", "ctl", 700), ("tcp", "pub", 700), ("tcp", "stream", 700), ("ipc", "cmd", 700)],
     )
     + [
@@ -119,7 +120,7 @@ def test_peers_that_have_shaken_hands_with_ctl_keep_no_newcomer_out(running):
 @pytest.mark.parametrize(
     ("running", "name", "kind"),
     few_and_long(
-        [("tcp", "cmd", "DEALER"), ("ipc", "cmd", "DEALER")], [("tcp", "pub", "SUB"), ("tcp", "stream", "PUB")]
+        [("mixed", "cmd", "DEALER")], [("ipc", "cmd", "DEALER"), ("tcp", "pub", "SUB"), ("tcp", "stream", "PUB")]
     ),
     indirect=["running"],
 )
@@ -139,7 +140,7 @@ def test_a_message_of_endlessly_many_parts_takes_no_memory(running, name, kind):
 
 @pytest.mark.parametrize(
     ("running", "topic_bytes", "n_topics"),
-    few_and_long([("tcp", 1000, 200)], [("tcp", 60, 200), ("tcp", 1, 1), ("ipc", 1000, 200)]),
+    few_and_long([("mixed", 1000, 200)], [("tcp", 60, 200), ("tcp", 1, 1), ("ipc", 1000, 200)]),
     indirect=["running"],
 )
 def test_a_flood_of_subscriptions_is_cut_off_and_others_are_served(running, topic_bytes, n_topics):

@@ -19,7 +19,7 @@ from tests.attacks.zmtp import RawPeer, connected, frame
 from tests.support.harness import RunningDaemon, running_daemon
 
 pytestmark = [pytest.mark.timeout(180), pytest.mark.realtime]
-ROUNDS, SOAK_ROUNDS = 4, 400
+ROUNDS, SOAK_ROUNDS = 2, 400
 FRAMES = 60
 """Frames of a round on each socket; below what the limit of requests drops."""
 STARTS_NOTHING = ("arm", "torque", "reset", "estop", "park")

@@ -134,38 +134,30 @@ def test_a_wrong_baud_and_other_servos_show_a_table(tty, tmp_path):
     assert "expected" in other and "found" in other
 
 
-def test_a_text_moves_over_a_tty_and_sigterm_parks(tty):
-    url = tty.url(baud_of("op3"))
-    daemon = RunningDaemon(robot="op3", bus=url)
+@pytest.mark.parametrize("ends", few_and_long([signal.SIGINT], [signal.SIGTERM]))
+def test_a_text_moves_over_a_tty_and_a_signal_in_a_motion_parks(tty, ends):
+    """SIGTERM ends every daemon of `running_daemon`, whose robot has to be parked then."""
+    daemon = RunningDaemon(robot="op3", bus=tty.url(baud_of("op3")))
     try:
         daemon.until_ready()
         said = daemon.mmmd("say", "wave with your right hand")
         assert said.returncode == 0, said.stderr
         assert "first servo frame" in said.stdout and "done" in said.stdout
-        assert daemon.terminate() == 0
+        with daemon.client() as client:
+            client.wait_for("idle", timeout_s=20)
+            going_on = subprocess.Popen(
+                [*MMMD, "say", "wave", "--seconds", "5", *daemon.at], stdout=subprocess.PIPE, text=True
+            )
+            client.wait_for("moving", timeout_s=20)
+        daemon.process.send_signal(ends)
+        out, _ = going_on.communicate(timeout=20)
+        assert "cancelled by shutdown" in out and going_on.returncode == 1
+        assert daemon.ended() == 0
         assert "parking -> limp" in daemon.said
     finally:
         daemon.close()
     assert tty.close() == 0  # its audit found no violation
     assert tty.audit.exists()
-
-
-@pytest.mark.parametrize("ends", few_and_long([signal.SIGINT], [signal.SIGTERM]))
-def test_a_signal_during_a_motion_parks_and_cancels_the_command(ends):
-    daemon = RunningDaemon()
-    try:
-        daemon.until_ready()
-        said = subprocess.Popen([*MMMD, "say", "wave", "--seconds", "5", *daemon.at], stdout=subprocess.PIPE, text=True)
-        with daemon.client() as client:
-            client.wait_for("moving", timeout_s=20)
-        daemon.process.send_signal(ends)
-        out, _ = said.communicate(timeout=20)
-        assert "cancelled by shutdown" in out and said.returncode == 1
-        assert daemon.ended() == 0
-        assert "parking -> limp" in daemon.said
-        assert '"violations": 0' in daemon.audit.read_text()
-    finally:
-        daemon.close()
 
 
 def child_pid(daemon: RunningDaemon, module: str) -> int:

@@ -18,7 +18,7 @@ import tempfile
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 from daemon.cli import main
 from daemon.client import Client, NoAnswerError
@@ -50,7 +50,7 @@ class RunningDaemon:
         robot: name or folder; None for `slow_reference`.
         model: whether the daemon starts its own generator, with the shipped model.
         answer: of the generator peer to a text.
-        tcp: sockets on free ports of this machine instead.
+        tcp: sockets on free ports of this machine instead; "but ctl" for all but the one that takes e-stops.
     """
 
     def __init__(
@@ -60,14 +60,14 @@ class RunningDaemon:
         robot: str | None = None,
         model: bool = False,
         answer: Answer = generate,
-        tcp: bool = False,
+        tcp: bool | Literal["but ctl"] = False,
     ) -> None:
         self._folder = tempfile.TemporaryDirectory(prefix="mmmd-test-")
         self.folder = Path(self._folder.name)
         self.endpoints = Endpoints(*(f"ipc://{self.folder}/{name}" for name in ("cmd", "ctl", "pub")))
         if tcp:
             cmd, ctl, pub, stream = (f"tcp://127.0.0.1:{port}" for port in free_ports(4))
-            self.endpoints = Endpoints(cmd, ctl, pub, stream=stream)
+            self.endpoints = Endpoints(cmd, self.endpoints.ctl if tcp == "but ctl" else ctl, pub, stream=stream)
             options = ("--stream", stream, *options)
         self.peer = None if model else KinematicGenerator(f"ipc://{self.folder}/gen", answer)
         self.audit = self.folder / "audit.json"
@@ -75,7 +75,7 @@ class RunningDaemon:
             bus = f"sim://?audit={self.audit}"
         generator = [] if model else ["--generator", f"ipc://{self.folder}/gen"]
         self.output = self.folder / "output"
-        command = [
+        self._command = [
             *MMMD,
             "run",
             "--robot",
@@ -89,9 +89,13 @@ class RunningDaemon:
             *options,
         ]
         # A daemon draws nothing, and MuJoCo would load GLFW in two of its processes.
-        environment = {**os.environ, "MUJOCO_GL": "disable", **(PATIENT if model else {})}
-        with self.output.open("wb") as out:
-            self.process = subprocess.Popen(command, stdout=out, stderr=out, env=environment)
+        self._environment = {**os.environ, "MUJOCO_GL": "disable", **(PATIENT if model else {})}
+        self.start()
+
+    def start(self) -> None:
+        """Start it, once more where it has ended: at the same sockets, with the same generator peer."""
+        with self.output.open("ab") as out:
+            self.process = subprocess.Popen(self._command, stdout=out, stderr=out, env=self._environment)
 
     @property
     def at(self) -> list[str]:
@@ -170,7 +174,7 @@ class RunningDaemon:
 
 @contextlib.contextmanager
 def running_daemon(*options: str, **how: Any) -> Iterator[RunningDaemon]:
-    """A daemon that answers; after the block it must end well, without a traceback, having moved the robot within every limit.
+    """A daemon that answers; after the block it must park its robot and end well, without a traceback, having kept every limit.
 
     Args:
         options: of `mmmd run`.
@@ -179,7 +183,11 @@ def running_daemon(*options: str, **how: Any) -> Iterator[RunningDaemon]:
     daemon = RunningDaemon(*options, **how)
     try:
         yield daemon.until_ready()
+        with daemon.client() as client:
+            parks = client.status().state in ("idle", "holding")
+        n_parked = daemon.said.count("parking -> limp")
         assert daemon.terminate() == 0, daemon.said
+        assert not parks or daemon.said.count("parking -> limp") > n_parked, daemon.said
         assert "Traceback" not in daemon.said, daemon.said
         if daemon.audit.exists():  # written where the servos are in the bus process
             report = json.loads(daemon.audit.read_text())

@@ -10,15 +10,13 @@ import json
 import os
 import signal
 import subprocess
-import tempfile
-from collections.abc import Callable
 
 import pytest
 
 from daemon.client import AsyncClient, CancelledByError, Client, NoAnswerError, RefusedError
 from daemon.client.mcp import TOOLS, McpServer
 from daemon.settings.config import Endpoints
-from tests.support.harness import MMMD, RunningDaemon, running_daemon
+from tests.support.harness import MMMD, running_daemon
 
 pytestmark = [pytest.mark.timeout(90), pytest.mark.realtime]
 
@@ -49,41 +47,30 @@ def test_both_clients_have_the_same_calls():
     assert public_calls(Client) == public_calls(AsyncClient)
 
 
-def test_both_clients_go_on_after_a_restart_and_say_nothing_late():
-    async def main(ends: Endpoints, start: Callable[[], RunningDaemon]) -> None:
-        first = start()
-        with Client(ends, timeout_s=1.0) as plain:
-            async with AsyncClient(ends, timeout_s=1.0) as robot:
+def test_both_clients_go_on_after_a_restart_and_say_nothing_late(running):
+    async def main() -> None:
+        with Client(running.endpoints, timeout_s=1.0) as plain:
+            async with AsyncClient(running.endpoints, timeout_s=1.0) as robot:
                 assert plain.say("wave", seconds=0.8).done
                 assert (await robot.say("wave", seconds=0.8)).done
-                assert first.terminate() == 0
+                assert running.terminate() == 0
                 for ask in (plain.status, lambda: plain.say("wave", seconds=0.8, timeout_s=1.0)):
                     with pytest.raises(NoAnswerError):
                         ask()
                 for ask in (robot.status, lambda: robot.say("wave", seconds=0.8, timeout_s=1.0)):
                     with pytest.raises(NoAnswerError):
                         await ask()
-                await asyncio.to_thread(start)
-                assert (
-                    plain.wait_for("limp", timeout_s=10).command is None
-                )  # what nobody heard is not carried out later
+                running.start()
+                await asyncio.to_thread(running.until_ready)
+                after = plain.wait_for("limp", timeout_s=10)
+                assert after.command is None  # what nobody heard is not carried out later
                 assert (await robot.wait_for("limp", timeout_s=10)).command is None
                 assert plain.capabilities().robot == (await robot.capabilities()).robot == "reference"
                 assert plain.status().state == (await robot.status()).state == "limp"
                 assert plain.gesture("nod").done
                 assert (await robot.gesture("nod")).done
 
-    with tempfile.TemporaryDirectory(prefix="mmmd-test-") as folder, contextlib.ExitStack() as daemons:
-        ends = Endpoints(*(f"ipc://{folder}/{name}" for name in ("cmd", "ctl", "pub")))
-
-        def start() -> RunningDaemon:
-            """A daemon at these endpoints, the one before having ended."""
-            daemon = RunningDaemon("--cmd", ends.cmd, "--ctl", ends.ctl, "--pub", ends.pub)
-            daemons.callback(daemon.close)
-            daemon.endpoints = ends
-            return daemon.until_ready()
-
-        asyncio.run(main(ends, start))
+    asyncio.run(main())
 
 
 def test_the_async_client_says_stops_and_watches_at_once(running):

@@ -33,7 +33,9 @@ AFTER = {
 """Verb -> the state before -> the state it ends in when nobody interferes; where there is none it is refused."""
 ENDS_MOTION = ("park", "stop", "torque_off", "estop", "cancel")
 WAY_OUT = {"limp": "arm", "estop": "reset"}
-STEPS = 25
+SEED, STEPS = 2091, 16
+"""In so few steps this sequence has 15 of the 17 verbs, each that ends a motion while the robot moves among them."""
+FRESH_STEPS = 25
 WITHIN_S = 12.0
 """Longest for a state to come: arming, or parking from far away, on a busy machine."""
 SETTLED_CYCLES = 10
@@ -215,13 +217,15 @@ class Sequence:
             time.sleep(0.02)
 
 
-@pytest.mark.parametrize("seed", [1, pytest.param(None, id="fresh", marks=pytest.mark.soak)])
-def test_random_sequences_keep_to_the_model(seed, tmp_path):
+@pytest.mark.parametrize(
+    ("seed", "steps"), [(SEED, STEPS), pytest.param(None, FRESH_STEPS, id="fresh", marks=pytest.mark.soak)]
+)
+def test_random_sequences_keep_to_the_model(seed, steps, tmp_path):
     drawn = seed or random.SystemRandom().randrange(10**6)
     with running_daemon("--gestures", str(tmp_path)) as daemon, daemon.client() as client:
         sequence = Sequence(client, random.Random(drawn))
         sequence.told.append(f"seed {drawn}")
-        for _ in range(STEPS):
+        for _ in range(steps):
             sequence.step()
         client.estop()
         client.reset()
