@@ -15,7 +15,7 @@ from daemon.scheduling.command_queue import SHADOW_S
 from daemon.wire.events import Accepted, Ack, Cancelled, Done, Progress
 from daemon.wire.requests import Say
 from mmm_core.inference.checkpoint import MODEL_FILE
-from tests.support.harness import START_TIMEOUT_S, RunningDaemon, mmmd
+from tests.support.harness import RATE_HZ, START_TIMEOUT_S, RunningDaemon, mmmd, slow_reference
 
 pytestmark = [
     pytest.mark.skipif(not MODEL_FILE.exists(), reason="no checkpoint in this checkout"),
@@ -28,7 +28,7 @@ pytestmark = [
 def run(tmp_path_factory):
     """A recorded run of the shipped model; the tests of this module share it."""
     log = tmp_path_factory.mktemp("run") / "run.mcap"
-    daemon = RunningDaemon("--log", str(log), robot="reference", model=True)
+    daemon = RunningDaemon("--log", str(log), model=True)
     daemon.log = log
     try:
         daemon.said_early = said_early(daemon)
@@ -114,10 +114,10 @@ def test_the_log_replays_to_the_same_goals(run):
     assert run.terminate() == 0
     audit = json.loads(run.audit.read_text())
     assert audit["goals"] > 0 and audit["violations"] == 0 and audit["self_contacts"] == 0
-    replayed = mmmd("replay", str(run.log), "--bus", "sim://", "--json", timeout_s=120)
+    replayed = mmmd("replay", str(run.log), "--robot", slow_reference(), "--bus", "sim://", "--json", timeout_s=120)
     assert replayed.returncode == 0, replayed.stderr + replayed.stdout
     report = json.loads(replayed.stdout)
-    assert report["identical"] and report["goals"] > 500 and report["audit"]["violations"] == 0
+    assert report["identical"] and report["goals"] > 5 * RATE_HZ and report["audit"]["violations"] == 0
 
 
 def free_ports(n: int) -> list[int]:

@@ -20,6 +20,7 @@ from daemon.wire.requests import KeyPoseOf
 from retarget.pipeline import Retargeter
 from tests.support.harness import MMMD, RunningDaemon
 from tests.support.robot_states import ROBOT, Servos, SharedDaemon, within
+from tests.support.sizes import few_and_long
 
 pytestmark = [pytest.mark.realtime, pytest.mark.timeout(180)]
 EXAMPLE = Path(__file__).parents[2] / "docs" / "examples" / "inbetween_taught.py"
@@ -210,15 +211,15 @@ def test_ctrl_c_before_and_after_the_recording_says_what_the_robot_does(taught, 
     assert GestureLibrary(gestures).get("my_lift").side == "right"
 
 
-def test_an_estop_or_somebody_who_arms_ends_the_recording(taught, servos):
+@pytest.mark.parametrize("disturb", few_and_long(["estop"], ["arm"]))
+def test_an_estop_or_somebody_who_arms_ends_the_recording(taught, servos, disturb):
     daemon, begun = taught
-    for disturb in ("arm", "estop"):
-        with begun("my_lift", "--limp", "--yes", "--seconds", "30") as teaching, daemon.client() as client:
-            teaching.until("move the arms; 30 s")
-            lead(daemon, servos, UP_AND_DOWN[:5])
-            getattr(client, disturb)()
-            status, complaints = teaching.ended()
-            assert status == 2 and "so the recording ended" in complaints and "NOT kept" in complaints
+    with begun("my_lift", "--limp", "--yes", "--seconds", "30") as teaching, daemon.client() as client:
+        teaching.until("move the arms; 30 s")
+        lead(daemon, servos, UP_AND_DOWN[:5])
+        getattr(client, disturb)()
+        status, complaints = teaching.ended()
+        assert status == 2 and "so the recording ended" in complaints and "NOT kept" in complaints
 
 
 @pytest.mark.long

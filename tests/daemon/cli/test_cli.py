@@ -15,10 +15,7 @@ import pytest
 
 from daemon.cli.program import COMMANDS, main
 from mmm_core.inference.checkpoint import MODEL_FILE
-from tests.support.harness import running_daemon
 from tests.support.shipped import loaded_once
-
-pytestmark = pytest.mark.realtime
 
 PRESENT = [n for n, c in COMMANDS.items() if importlib.util.find_spec(c.target.partition(":")[0]) is not None]
 NOWHERE = [
@@ -181,41 +178,3 @@ def _started_by(pid: int, command: str) -> int:
                 return int(child)
         time.sleep(0.05)
     raise AssertionError(f"process {pid} started no {command}")
-
-
-# Last of the module: this daemon would run while the other tests take their time.
-
-
-@pytest.fixture(scope="module")
-def running():
-    with running_daemon() as daemon:
-        yield daemon
-
-
-def test_the_session_of_the_readme(running):
-    said = running.mmmd("say", "wave with your right hand")
-    assert said.returncode == 0
-    assert said.stdout.splitlines()[0].startswith("accepted: moves the right hand to the side")
-    assert said.stdout.splitlines()[-1].startswith("done: shown: moves the right hand to the side")
-    assert "reference on sim://" in running.mmmd("status").stdout
-    for verb, after in (("stop", "idle"), ("estop", "in e-stop"), ("reset", "limp"), ("arm", "idle"), ("park", "limp")):
-        result = running.mmmd(verb)
-        assert result.returncode == 0, result.stderr
-        assert f"is {after}" in result.stdout, result.stdout
-
-
-def test_json_of_the_commands(running):
-    status = json.loads(running.mmmd("status", "--json").stdout)
-    assert status["type"] == "state" and status["v"] == 1 and status["robot"] == "reference"
-    lines = [json.loads(line) for line in running.mmmd("say", "left wave", "--json").stdout.splitlines()]
-    assert lines[0]["type"] == "accepted" and lines[-1]["type"] == "done"
-    watched = running.mmmd("watch", "--json", "--n", "3")
-    assert watched.returncode == 0 and len([json.loads(line) for line in watched.stdout.splitlines()]) == 3
-
-
-def test_a_refused_text_is_one_message_and_status_1(running):
-    result = running.mmmd("say", "do a somersault")
-    assert result.returncode == 1 and result.stdout == ""
-    assert "legs" in result.stderr and result.stderr.count("\n") == 1
-    event = json.loads(running.mmmd("say", "do a somersault", "--json").stdout)
-    assert event["type"] == "rejected" and event["code"] == "out_of_scope"

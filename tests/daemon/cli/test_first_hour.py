@@ -22,7 +22,7 @@ from daemon.cli.tables import table_of
 from daemon.client import RefusedError
 from daemon.dynamixel.registers.models import MODELS
 from retarget.robot.loading import load_robot
-from tests.support.harness import MMMD, START_TIMEOUT_S, RunningDaemon, running_daemon
+from tests.support.harness import MMMD, START_TIMEOUT_S, RunningDaemon
 
 WITHOUT_TORCH = """\
 import sys
@@ -36,12 +36,6 @@ class Without(PathFinder):
 sys.meta_path[sys.meta_path.index(PathFinder)] = Without
 """
 """What a machine that has no PyTorch looks like to Python."""
-
-
-@pytest.fixture(scope="module")
-def running():
-    with running_daemon() as daemon:
-        yield daemon
 
 
 def mmmd(*arguments: str, text: str | None = None) -> subprocess.CompletedProcess[str]:
@@ -69,12 +63,6 @@ def test_a_machine_without_pytorch_runs_gestures_and_says_what_is_missing(tmp_pa
         daemon.close()
 
 
-@pytest.mark.realtime
-def test_a_port_in_use_is_status_1_so_that_a_service_tries_again(running):
-    again = mmmd("run", *running.at, "--stream", running.endpoints.stream)
-    assert again.returncode == 1 and running.endpoints.cmd in again.stderr and "already in use" in again.stderr
-
-
 @pytest.mark.long
 @pytest.mark.realtime
 @pytest.mark.parametrize(
@@ -89,44 +77,6 @@ def test_a_bad_option_of_the_bus_is_bad_use_and_named(bus, tmp_path):
     ends = [f"ipc://{tmp_path}/{name}" for name in ("cmd", "ctl", "pub", "stream")]
     done = mmmd("run", "--bus", bus, "--cmd", ends[0], "--ctl", ends[1], "--pub", ends[2], "--stream", ends[3])
     assert done.returncode == 2 and f"--bus {bus}" in done.stderr, done.stderr
-
-
-@pytest.mark.realtime
-def test_a_look_says_that_it_is_held_and_status_shows_it(running):
-    """After a `look` the head did not follow texts any more, and plain `status` did not say why."""
-    told = running.mmmd("look", "--yaw", "30", "--pitch", "-10")
-    assert told.stdout.startswith("look: 30 degrees left, 10 degrees up, held until `mmmd look` without angles")
-    assert "30 degrees left, 10 degrees up, held until `mmmd look`" in running.mmmd("status").stdout
-    assert running.mmmd("look").stdout.startswith("look: the head is free again")
-    assert running.mmmd("look", "--yaw", "500").returncode == 2
-
-
-@pytest.mark.realtime
-def test_answers_say_what_became_of_the_robot(running):
-    with running.armed():
-        pass
-    assert running.mmmd("stop").stdout.startswith("stop: the robot ")
-    assert "any more; the robot is " in running.mmmd("idle", "off").stdout
-    assert running.mmmd("gesture", "play", "nosuch").returncode == 2
-
-
-@pytest.mark.realtime
-def test_a_fault_is_left_by_reset_and_then_arm(running):
-    """`status` in an e-stop or fault named `arm`, which is refused there."""
-    with running.armed() as client:
-        client.estop()
-        client.wait_for("estop", timeout_s=20)
-        assert "needs `mmmd reset`, then `mmmd arm`" in " ".join(running.mmmd("status").stdout.split())
-        client.reset()
-        client.wait_for("limp", timeout_s=20)
-        assert "(needs `mmmd arm`)" in " ".join(running.mmmd("status").stdout.split())
-
-
-@pytest.mark.realtime
-def test_a_stream_of_wrong_joints_alone_is_status_1(running):
-    with running.armed():
-        done = mmmd("stream", *running.at, text='{"nojoint": 1}\n' * 3)
-    assert done.returncode == 1 and "nojoint" in done.stdout, done
 
 
 def test_help_keeps_its_borders():
