@@ -87,8 +87,7 @@ def test_the_front_frozen_in_each_state_leaves_a_robot_that_stands(shared: Share
             after = ("limp", "holding", "idle") if state == "arming" else after
             assert client.wait_for(*after, timeout_s=5).state in after
             servos.assert_kept()
-        client.reset()
-        client.wait_for("limp", timeout_s=5)
+        lead_to(client, servos, "limp")
         assert_works(client)
 
 
