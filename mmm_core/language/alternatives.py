@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 
-from mmm_core.language.at_once import base_of
+from mmm_core.language.completed_at_once import base_of
 from mmm_core.language.ellipsis import OTHER
 from mmm_core.language.limbs import ARMS, HEAD, SOME_ARM, limbs_of
 

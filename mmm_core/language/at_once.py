@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import re
-from functools import cache, lru_cache, partial
+from functools import partial
 
+from mmm_core.language.completed_at_once import ACTS, OTHER_HAND, freed, imperative, sided, there, with_verb
 from mmm_core.language.limbs import ARMS, SOME_ARM, limbs_named, limbs_of
-from mmm_core.language.word_tables import LIMB, REMEMBERED, any_of, lines
+from mmm_core.language.word_tables import LIMB, any_of
 
 _any = partial(any_of, "at_once")
 _POSE = re.compile(rf"^(?:(?:and|also|with|please) )*{_any('pose')}\w*")
@@ -30,10 +31,6 @@ _WITH_POSE = re.compile(
     rf"(?:{_any('held at')}\b.*|{_any('is held')}))$"
 )
 _AND = re.compile(r"\s*,\s*(?:and\s+|but\s+)?(?:also\s+)?|\s+(?:and|plus|but)\s+(?:also\s+)?")
-_FILLER = re.compile(_any("filler"))
-_FRONTED = re.compile(
-    rf"^(?:(?:and|with|using) )+(?:your |the )?(left|right|other)(?: hand| arm| one)?,? (?!{_any('place')}\b)(\w.+)$"
-)
 _RAISES = re.compile(r"^(?:raise|lift|put up|hold up) (?:your |the )?(?:left|right) (?:hand|arm)(?: up| high)?$")
 _ONLY_WAVES = re.compile(r"^wave\b(?!.*\b(?:hand|arm|left|right|other)\b)")
 """'Raise your left hand and wave' is one gesture."""
@@ -49,16 +46,6 @@ _LISTED_NEXT = re.compile(
 )
 """'Your weight and shoulders over your right leg' names two things that do one thing."""
 _HOLDS = re.compile(r"(?:hold|keep|stay|remain|freeze|wait)s?\b.*\b(?:seconds?|secs?)\b")
-_GERUND = re.compile(r"^\w+(?:ing|ed)\b")
-_IS = re.compile(
-    r"^(?P<limb>(?:your |the |both )?(?:left |right )?(?:hands?|arms?|fists?|palms?|head)) "
-    rf"{_any('is')}(?: being| held)? (?P<rest>.+)$"
-)
-_ACTS = re.compile(
-    r"^(?:(?:let|have|get|make|keep) )?(?:your |the )?(?:(?P<side>left|right) (?:hand|arm|fist)|(?P<head>head)) "
-    rf"(?:(?P<ing>{_any('acting')})|(?P<verb>{_any('act')})(?:e?s)?)\b(?P<rest>.*)$"
-)
-"""'Your left hand waves', 'have your head nod'."""
 _WAY_LAST = re.compile(rf"\b{_any('way')}$")
 _WAY_FIRST = re.compile(rf"^{_any('way')}\b(?! (?:hands?|arms?|fists?|palms?|one|elbow)\b)")
 """'Up and down' and 'back and forth' belong to one command."""
@@ -67,19 +54,16 @@ _SOMEBODY = rf"^(?:{_any('somebody')} )?"
 _SHARES, _PREPARES = re.compile(rf"{_SOMEBODY}{_any('shares')}$"), re.compile(rf"{_SOMEBODY}{_any('prepares')}\b")
 _TAKES, _IT = re.compile(rf"\b{_any('takes')}"), re.compile(rf"^{_any('it')}")
 _RESTS_AT, _TO_AND_FRO = re.compile(rf"\b{_any('rests at')}\b"), re.compile(rf"^{_any('to and fro')}\b")
-_OTHER_HAND = re.compile(r"\bother (?:hand|arm|one)\b")
 _PLACE_FIRST = re.compile(
     r"^(?:directly |diagonally |straight )?(?:at|to|towards?|in|into|below|above|beside|from|(?:left|right|east|west)wards?) |"
     r"(?:up|down|across|over|back) (?:to|at|towards|across|over|the) |the (?:left|right) (?:only|once|twice|\w+ times|a bit)\b"
 )
-_SIDE_FIRST = re.compile(r"^(left|right) (?=(?:on|behind|over|at|up|down|out) )")
 _OWN_PARTS = re.compile(
     r"(?:,? )with (?:the (?:palm|forearm|elbow|fist|finger|hand|arm|wrist|thumb)\b|"
     r"(?:(?:your|their|his|her|its|both|the) )*(?:hands|arms|fists|palms|elbows|forearms) "
     r"(?:(?:held|raised|stretched|straight|lifted) )*(?:up|raised|out|above|overhead|high|in the air|in front|forward|over (?:your|the) head|wide|together)\b)"
 )
 """'Clap with your arms up' says where the arms are that clap."""
-_LEFT_OUT = re.compile(rf"{_any('left out')}\b")
 _RAISED_WITH = re.compile(
     r" with (?:your |the )?(?P<side>(?:left|right) )?(?:hand|arm|fist) (?:(?:held|raised|stretched|straight|lifted) )*"
     r"(?:up|out|high|overhead|raised|over|above|in|to the (?:left|right|front|sides?)|sideways|forward|across|low|at (?:the |your )?(?:hip|shoulder|chest|head|waist|eye) (?:height|level))\b"
@@ -120,8 +104,8 @@ def divided(clause: str) -> list[str]:
     ['wave with your right hand', 'nod']
     """
     for pair, asked in _pairs(clause):
-        first, second = (_imperative(part) for part in pair)
-        second = _with_verb(second, first)
+        first, second = (imperative(part) for part in pair)
+        second = with_verb(second, first)
         a, b = limbs_of(first), limbs_of(second)
         if _OWN_PART.match(second) and a & ARMS and b == SOME_ARM:
             continue
@@ -133,10 +117,10 @@ def divided(clause: str) -> list[str]:
             continue
         if a == SOME_ARM and not asked and _WITHOUT_OBJECT.match(first) and _HAND_TO.match(second):
             continue  # "a salute, right hand to the brow" says how
-        if a == SOME_ARM == b and (asked or _OTHER_HAND.search(second)):
+        if a == SOME_ARM == b and (asked or OTHER_HAND.search(second)):
             sides = ("left", "right") if re.search(r"\bleft\b", first) else ("right", "left")
             return (
-                [_sided(p, side) for p, side in zip((first, second), sides, strict=True)]
+                [sided(p, side) for p, side in zip((first, second), sides, strict=True)]
                 if "hand" in clause
                 else [first, second]
             )
@@ -146,14 +130,14 @@ def divided(clause: str) -> list[str]:
             continue  # "lift your right hand and swear an oath" is one gesture
         if not asked and _is_one_gesture(first, second):
             continue
-        of_limbs = any(_ACTS.match(part.strip(" ,.")) for part in pair)  # "drum, your head nodding"
+        of_limbs = any(ACTS.match(part.strip(" ,.")) for part in pair)  # "drum, your head nodding"
         if (
             not asked
             and not of_limbs
             and not are_at_once(first, second, joined="," not in clause[len(pair[0]) : len(pair[0]) + 2])
         ):
             continue
-        return [*divided(_freed(first, b)), *divided(_there(_freed(second, a), first))]
+        return [*divided(freed(first, b)), *divided(there(freed(second, a), first))]
     return [clause]
 
 
@@ -179,7 +163,7 @@ def _is_one_gesture(first: str, second: str) -> bool:
 def same_limbs(clause: str) -> list[str]:
     """Two commands that a clause requests at once of equal limbs and that must follow each other; else the clause alone."""
     for pair, asked in _pairs(clause):
-        first, second = (_imperative(part) for part in pair)
+        first, second = (imperative(part) for part in pair)
         a, b = limbs_named(first), limbs_named(second)
         if asked and a and b and (a & b or ARMS <= (a | b)) and not _apart(a, b):
             return [first, second]
@@ -216,85 +200,3 @@ def _is_its_own_arm(clause: str, start: int) -> bool:
     if raised is None or not moved & (ARMS | SOME_ARM):
         return False
     return moved == SOME_ARM or not raised["side"] or f"{raised['side'].strip()}_arm" in moved
-
-
-def _with_verb(second: str, first: str) -> str:
-    """The second part with the verb of the first: "right with the right arm" beside "point left with the left arm"."""
-    verb = _LEFT_OUT.match(first)
-    one = re.match(
-        r"(?:with |using )(?:your |the )?(?P<side>left|right|other)(?: hand| arm| one)? (?=to\b|up\b|down\b|forward|ahead|back)",
-        second,
-    )
-    way = re.match(r"(?:to the )?(?:left|right|up|down|forward|ahead|straight ahead|back) (?=with\b|using\b)", second)
-    if verb is None or (one is None and way is None):
-        return second
-    if one is None:
-        return f"{verb[0]} {second}"
-    named = re.search(r"\b(left|right) (?:hand|arm)\b", first)
-    side = one["side"] if one["side"] != "other" else ("right" if named and named[1] == "left" else "left")
-    return f"{verb[0]} {second[one.end() :]} with your {side} hand"
-
-
-def _imperative(part: str) -> str:
-    """A part as a command: "nodding" -> "nod", "your left arm is stretched forward" -> "left arm stretched forward"."""
-    part = _FRONTED.sub(r"\2 with your \1 hand", part.strip(" ,."))
-    while (shorter := _FILLER.sub("", part)) != part:
-        part = shorter
-    part = _SIDE_FIRST.sub(r"\1 hand ", part)
-    if acts := _ACTS.match(part):
-        verb = base_of(acts["ing"]) if acts["ing"] else acts["verb"]
-        if acts["head"]:
-            return f"{verb}{acts['rest']}" if verb in ("nod", "look") else f"{verb} your head{acts['rest']}"
-        return f"{verb}{acts['rest']} with your {acts['side']} hand"
-    if stays := _IS.match(part):
-        part = f"{stays['limb']} {stays['rest']}"
-    if m := _GERUND.match(part):
-        part = base_of(m[0]) + part[m.end() :]
-    return part
-
-
-@lru_cache(maxsize=REMEMBERED)
-def base_of(inflected: str) -> str:
-    """The verb of a gerund or a past form: "waving" -> "wave", "clapped" -> "clap"; the word itself where there is none.
-
-    >>> base_of("waving"), base_of("nodding"), base_of("clapped"), base_of("king")
-    ('wave', 'nod', 'clap', 'king')
-    """
-    words = _words()
-    stem = inflected.removesuffix("ing").removesuffix("ed")
-    doubled = stem[:-1] if len(stem) > 2 and stem[-1] == stem[-2] else ""
-    ranked = [word for word in (stem, f"{stem}e", doubled) if word in words and len(word) > 1]
-    return min(ranked, key=lambda word: words[word]) if ranked and stem != inflected else inflected
-
-
-@cache
-def _words() -> dict[str, int]:
-    return {word: i for i, word in enumerate(lines("corpus_words"))}
-
-
-def _freed(clause: str, other: frozenset[str]) -> str:
-    """A clause of some arm with the side that the other command leaves free."""
-    if limbs_of(clause) != SOME_ARM or not other & ARMS or other >= ARMS:
-        return clause
-    return _sided(clause, "left" if "right_arm" in other else "right")
-
-
-def _there(clause: str, first: str) -> str:
-    """A clause with "there" replaced by the direction of `first`: "look there" beside "point to the left" -> "look to the left"."""
-    way = re.search(r"\b(?:to (?:the |your )?(?:left|right)|up|down|left|right)\b(?! (?:hand|arm))", first)
-    found = re.match(
-        r"(look|point)(?: (?:there|that way|over there|in that direction)(?: too)?| (?=with\b)|$)(?P<rest>.*)", clause
-    )
-    if way is None or found is None or (found[1] == "point" and found[0] == "point"):
-        return clause
-    return f"{found[1]} {way[0]}{found['rest']}"
-
-
-def _sided(clause: str, side: str) -> str:
-    if re.search(r"\b(?:left|right) (?:hand|arm)\b", clause):
-        return clause
-    if _OTHER_HAND.search(clause):
-        other = re.sub(r"\b(?:(?:your|the) )?other (hand|arm|one)\b", rf"your {side} \1", clause, count=1)
-        return other.replace(f"your {side} one", f"your {side} hand")
-    named, n = re.subn(r"(?:^|\b(?:your|one|a|the) )(hand|arm|fist)\b", rf"your {side} \1", clause, count=1)
-    return named if n else f"{clause} with your {side} hand"

@@ -11,10 +11,11 @@ import re
 from dataclasses import replace
 
 from mmm_core.language.alternatives import anything_but, otherwise
-from mmm_core.language.at_once import base_of, divided, same_limbs
+from mmm_core.language.at_once import divided, same_limbs
 from mmm_core.language.clause_patterns import SPEAKS_OF_AN_ACT
 from mmm_core.language.clauses import MOST_WORDS, commands_in_turn
 from mmm_core.language.commands import MOST_AT_ONCE, PlainCommand, Reading, read_exactly
+from mmm_core.language.completed_at_once import base_of
 from mmm_core.language.corrections import corrected
 from mmm_core.language.denial import Denial, without_denial
 from mmm_core.language.ellipsis import completed, with_sides
@@ -69,7 +70,7 @@ def read(text: str, *, by_rules_alone: bool = False) -> Reading:
     if denial.denied and not denial.rest and not denial.anything:
         return Reading(text, (), _shown(denial.denied))
     if denial.anything and not denial.rest:
-        return Reading(text, ((_command(anything_but(denial.denied)),),), _shown(denial.denied))
+        return Reading(text, ((command_of(anything_but(denial.denied)),),), _shown(denial.denied))
     rest = (
         _of_denied_limb(rewritten(everyday(denial.rest) or without_request(denial.rest)), denial)
         if denial.denied
@@ -169,15 +170,16 @@ def _steps(clause: str, notes: list[str]) -> list[tuple[PlainCommand, ...]]:
     clause = without_request(clause)
     at_once = divided(clause)
     if 1 < len(at_once) <= MOST_AT_ONCE:
-        return [tuple(_command(c) for c in at_once)]
+        return [tuple(command_of(c) for c in at_once)]
     follow = same_limbs(clause)
     if len(follow) > 1:
         notes.append(f"'{follow[0]}' and '{follow[1]}' move the same limb, so one follows the other")
-        return [(_command(c),) for c in follow]
-    return [(_command(clause),)]
+        return [(command_of(c),) for c in follow]
+    return [(command_of(clause),)]
 
 
-def _command(clause: str) -> PlainCommand:
+def command_of(clause: str) -> PlainCommand:
+    """A clause as one command, with its manner."""
     rest, manner = manner_of(clause)
     bare = _PAST.sub(lambda m: base_of(m[0]), without_request(rest))
     words = rewritten(everyday(bare) or bare)

@@ -6,8 +6,8 @@ import re
 from functools import cache, lru_cache
 from itertools import cycle
 
-from mmm_core.language.at_once import base_of
 from mmm_core.language.clause_patterns import SPEAKS_OF_AN_ACT
+from mmm_core.language.completed_at_once import base_of
 from mmm_core.language.count_words import TIMES
 from mmm_core.language.limbs import is_gesture_verb
 from mmm_core.language.word_tables import LIMB, REMEMBERED, WAY, RuleTable, lines, pairs, replaced, substitutions
