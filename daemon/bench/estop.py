@@ -23,7 +23,8 @@ _METHOD = (
     "mmmd run --bus sim:// while one busy process for each core runs at normal priority; e-stop sent during a motion by a"
     " client that has FIFO priority where permitted, as its own wait for a core is not the daemon's; bus periods from the"
     " moment before it sends to the cycle whose bytes cut torque, rounded up; {} times, the robot reset and armed between."
-    " Disturbances: servos behind a tty that outlive the daemon's processes; the client as before, on ctl alone; from its request"
+    " Disturbances: servos behind a tty that outlive the daemon's processes, with FIFO priority for"
+    " the kernel's workers that carry a pty's bytes where permitted; the client as before, on ctl alone; from its request"
     " to the instant at which no servo has torque, looked for every 0.5 ms; from_back: from the first bytes of a bus process that"
     " was away"
 )

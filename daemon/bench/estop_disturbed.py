@@ -16,6 +16,7 @@ import numpy as np
 from daemon.bench.daemon_rig import percentile
 from daemon.bench.disturbances import DISTURBANCES, Disturbance
 from daemon.bench.estop_rig import Button, EstopRig
+from daemon.bench.tty_servos import pty_workers_first
 
 STAYS_OFF_S = 0.1
 """Seconds without torque after which torque counts as off, once the e-stop is reported as carried out."""
@@ -70,7 +71,7 @@ def give_one(rig: EstopRig, disturbance: Disturbance, rng: np.random.Generator) 
     with Button(rig.endpoints.ctl, has_fifo=rig.has_fifo) as button:
         if not disturbance.newcomer:
             button.connect()
-        with disturbance.act(rig, rng):
+        with disturbance.act(rig, rng), pty_workers_first():
             asked_s = time.monotonic()
             if disturbance.newcomer:
                 button.connect()

@@ -37,8 +37,9 @@ HALT_REPLY_S = 0.05
 """Seconds that the reply to a stop or an e-stop waits at most for the bus cycle that takes it, and for earlier texts to end."""
 STATUS_PATIENCE_S = 30.0
 """Seconds that the reply to a `status` waits at most; the front may be late: the daemon starts, or its machine was held up."""
-AT_ONCE = 64
-"""Requests that a turn reads before it serves them, to find an e-stop among them; more wait in their senders' sockets."""
+AT_ONCE = 16
+"""Requests that a turn reads before it serves them, to find an e-stop among them; more wait in their senders' sockets. An
+e-stop that arrives during a turn waits for its end."""
 PAUSE_S = 0.001
 """Seconds of pause after a turn that has read `AT_ONCE` requests: this process goes before all others but the bus process, and
 under a flood of requests it would leave the processor to nobody, not even to the client that sends the e-stop."""
