@@ -14,10 +14,10 @@ import msgspec
 
 from daemon.state.ledger import Entry
 from daemon.state.replies import NotPlayableError
-from daemon.wire.events import Rejected
+from daemon.wire.events import Accepted, Rejected
 from daemon.wire.requests import MAX_TEXT_CHARS, Gesture, Lease, Say, tag_of
 from mmm_core.language.command_changes import NothingToReferToError
-from mmm_core.language.commands import Reading, exactly
+from mmm_core.language.commands import EXACTLY, Reading, exactly, read_exactly
 from mmm_core.language.context import InContext, in_context
 from mmm_core.language.reading import read
 from mmm_core.language.warming import warmed
@@ -100,11 +100,17 @@ class Conversations:
         return None
 
     def _reading_of(self, entry: Entry) -> Reading | None:
-        """The parsed words of a command; None for a command without words."""
+        """The commands that the generator, or else the rules, read in a command; None for one without words."""
         if isinstance(entry.request, Say):
-            return self._read(entry.request.text)
+            return _as_accepted(entry) or self._read(entry.request.text)
         words = self._words_of(entry.request.name) if isinstance(entry.request, Gesture) else ""
         return self._read(words) if words else None
+
+
+def _as_accepted(entry: Entry) -> Reading | None:
+    """The commands that a command's `accepted` event says; None before it, and where it says none."""
+    commands = next((event.commands for event in entry.events if isinstance(event, Accepted)), ())
+    return read_exactly(f"{EXACTLY} {'; '.join(commands)}") if commands else None
 
 
 def _played(request: Say, last: Entry, meant: InContext, text: str) -> Say:

@@ -144,7 +144,7 @@ def _with_steps(engine: Engine) -> list[tuple[int, Engine]]:
 
 def _with_settings(engine: Engine, **changes: Any) -> Engine:
     settings = replace(engine.settings, **changes)
-    return Engine(engine.model, engine.encoder, engine.checkpoint_hash, settings)
+    return Engine(engine.model, engine.encoder, engine.checkpoint_hash, settings, reader=engine.reader)
 
 
 @torch.inference_mode()

@@ -11,11 +11,12 @@ from mmm_core.errors import CheckpointError, GenerationError
 from mmm_core.generate.motion_generation import MotionGeneration
 from mmm_core.generate.motion_model import MotionModel, check_seed
 from mmm_core.generate.result import GenerationResult
+from mmm_core.generate.sentence_reader import SentenceReader
 from mmm_core.inference.checkpoint import MODEL_FILE, Model, file_hash, load_model, load_text_encoder
 from mmm_core.inference.int8_linear import convert_to_int8, int8_is_supported
 from mmm_core.inference.onednn_linear import can_pack, can_pack_bf16, fastest_precision, has_bf16_matrix_units, pack
 from mmm_core.model.sampling import OFFICIAL_SAMPLING, OFFICIAL_UPPER_BODY, SamplingSettings
-from mmm_core.model.text import TextEncoder
+from mmm_core.model.text import MiniLm, TextEncoder
 from mmm_core.model.tokens import frames_for_seconds
 from mmm_core.motion.motion import FPS
 
@@ -40,8 +41,9 @@ class Engine(MotionModel):
         checkpoint_hash: str,
         settings: SamplingSettings,
         precision: Precision = "fp32",
+        reader: SentenceReader | None = None,
     ) -> None:
-        super().__init__(model, encoder, checkpoint_hash, settings)
+        super().__init__(model, encoder, checkpoint_hash, settings, reader)
         self.precision: Precision = precision
 
     @classmethod
@@ -94,7 +96,10 @@ class Engine(MotionModel):
             )
         words = "bf16" if chosen == "bf16" or (chosen == "int8" and has_bf16_matrix_units()) else "fp32"
         pack(encoder, words)
-        engine = cls(model, encoder, file_hash(path), settings or plain, chosen)
+        reader = None
+        if model.is_ours and model.scope is not None and isinstance(encoder, MiniLm):
+            reader = SentenceReader.load(encoder, words)
+        engine = cls(model, encoder, file_hash(path), settings or plain, chosen, reader)
         if chosen == "int8":
             pack(
                 model.transformer.word_layers, words

@@ -9,9 +9,9 @@ import torch
 from torch import Tensor
 
 from mmm_core.errors import GenerationError
+from mmm_core.generate.sentence_reader import SentenceReader
 from mmm_core.inference.checkpoint import Model
 from mmm_core.language.commands import PlainCommand, Reading, read_exactly
-from mmm_core.language.reading import read
 from mmm_core.language.scope import ScopeVerdict, clauses_of, unreadable, with_clauses
 from mmm_core.model.clip import ClipText
 from mmm_core.model.sampling import SamplingSettings
@@ -32,13 +32,22 @@ class MotionModel:
         encoder: the text encoder, the checkpoint's own or the shipped one.
         checkpoint_hash: names the checkpoint in every motion and answer.
         settings: how tokens are sampled.
+        reader: reads texts; None for a model that is given every text as it is.
     """
 
-    def __init__(self, model: Model, encoder: TextEncoder, checkpoint_hash: str, settings: SamplingSettings) -> None:
+    def __init__(
+        self,
+        model: Model,
+        encoder: TextEncoder,
+        checkpoint_hash: str,
+        settings: SamplingSettings,
+        reader: SentenceReader | None = None,
+    ) -> None:
         self.model = model
         self.encoder = encoder
         self.checkpoint_hash = checkpoint_hash
         self.settings = settings
+        self.reader = reader
 
     def understand(self, text: str) -> tuple[TextStates, ScopeVerdict]:
         """States of a text in plain words (`mmm_core.language.reading`) and its scope verdict."""
@@ -53,11 +62,11 @@ class MotionModel:
 
     def reading_of(self, text: str) -> Reading:
         """The commands that are read in a text; an imported model is given every text as it is."""
-        if not self.model.is_ours or self.model.scope is None or unreadable(text):
+        if self.reader is None or unreadable(text):
             exact = read_exactly(text)
             said = text if exact is None else exact.words
             return Reading(said, ((PlainCommand(said),),), plain=True)
-        return read(text)
+        return self.reader.read(text)
 
     def understand_all(self, texts: list[str]) -> list[tuple[TextStates, ScopeVerdict]]:
         """States and scope verdicts of several texts, encoded in one batch.

@@ -8,7 +8,7 @@ consists of phrases of `words/context.txt` alone, or if it omits words that a la
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
 
@@ -166,8 +166,12 @@ def _left_out(text: str, said: str, steps: Steps) -> InContext | None:
     return InContext(replace(read(whole), text=text))
 
 
-def conversation(texts: Sequence[str]) -> list[InContext | Reading]:
+def conversation(texts: Sequence[str], reads: Callable[[str], Reading] = read) -> list[InContext | Reading]:
     """The meanings of texts that follow each other on one connection.
+
+    Args:
+        texts: the texts in their order.
+        reads: reads a text that stands by itself.
 
     Raises:
         NothingToReferToError: a text refers to an earlier command, but there is none, or it cannot be changed like this.
@@ -175,7 +179,7 @@ def conversation(texts: Sequence[str]) -> list[InContext | Reading]:
     meant: list[InContext | Reading] = []
     before: Reading | None = None
     for text in texts:
-        found = in_context(text, before) or read(text)
+        found = in_context(text, before) or reads(text)
         meant.append(found)
         now = found.reading if isinstance(found, InContext) else found
         before = now if now.steps else before

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import unicodedata
 from dataclasses import dataclass
+from itertools import islice
 from typing import Protocol
 
 import torch
@@ -141,12 +142,19 @@ class MiniLm(nn.Module):
         mask = torch.tensor([[True] * len(row) + [False] * (width - len(row)) for row in encoded])
         return ids, mask
 
+    def lower_states(self, ids: Tensor, mask: Tensor, n_layers: int) -> Tensor:
+        """States (B, W, D) of word pieces (B, W) after the first `n_layers` layers; after none, the embeddings."""
+        x = self.word_embedding(ids) + self.position_embedding.weight[: ids.shape[1]] + self.type_embedding
+        x = self.embedding_norm(x)
+        for layer in islice(self.layers, n_layers):
+            x = layer(x, mask[:, None, None, :])
+        return x
+
     @torch.inference_mode()
     def encode(self, texts: list[str]) -> TextStates:
         """Word states and unit sentence vectors of `texts`; each text is cut at 64 word pieces."""
         ids, mask = self.piece_ids(texts)
-        x = self.word_embedding(ids) + self.position_embedding.weight[: ids.shape[1]] + self.type_embedding
-        x = self.embedding_norm(x)
+        x = self.lower_states(ids, mask, 0)
         words = x
         for depth, layer in enumerate(self.layers, 1):
             x = layer(x, mask[:, None, None, :])

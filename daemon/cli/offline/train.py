@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from mmm_core.training.recipe import Recipe
     from mmm_core.training.run import Run
 
-Stage = Literal["all", "tokenizer", "transformer", "length", "evaluator", "scope", "average", "ablation"]
+Stage = Literal["all", "tokenizer", "transformer", "length", "evaluator", "scope", "tagger", "average", "ablation"]
 
 
 def train(
@@ -55,6 +55,8 @@ def train(
 
     Example, only the scope of a finished run anew: mmmd train scope --run runs/compact --out model.safetensors
 
+    Example, what divides a sentence into commands: mmmd train tagger --out tagger.safetensors
+
     Example, the mean of models with one start: mmmd train average --models a.safetensors b.safetensors --out c.safetensors
 
     Example, one choice of the recipe changed at a time: mmmd train ablation --data DIR --precision bf16 --run runs/ablation
@@ -63,6 +65,7 @@ def train(
 
     Args:
         stage: all of them and a checkpoint, or one; scope builds what refusals rest on again for the run's checkpoint;
+            tagger trains what divides sentences into commands, from the marked sentences that ship (half an hour, no recipe);
             average writes the mean of --models; ablation trains variants of a recipe and prints what the probes and real
             captions say of each.
         config: name of a recipe that ships, or a TOML file (docs/training.md); compact, or ablation for that stage.
@@ -96,6 +99,8 @@ def train(
         raise CommandError(f"train {stage}: --models is for `mmmd train average`, which needs two of them or more")
     if stage == "average":
         return _average(models, out)
+    if stage == "tagger":
+        return _tagger(out)
     config = config or ("ablation" if stage == "ablation" else "compact")
     recipe = read_recipe(config, seed)
     if stage == "tokenizer" and recipe.start:
@@ -148,6 +153,17 @@ def _average(models: Sequence[Path], out: Path | None) -> int:
     if len(models) < 2 or out is None:
         raise CommandError("train average: --models A B ... --out F: two checkpoints or more, and where the mean goes")
     average_models(models, out)
+    sys.stdout.write(f"{out}\n")
+    return 0
+
+
+def _tagger(out: Path | None) -> int:
+    """Train and write the sentence tagger."""
+    from mmm_core.training.tagger_training import train_tagger
+
+    if out is None:
+        raise CommandError("train tagger: --out F: the file of the tagger; the shipped one is not overwritten unasked")
+    train_tagger(out)
     sys.stdout.write(f"{out}\n")
     return 0
 

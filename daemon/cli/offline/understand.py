@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json as json_module
 import sys
+from functools import cache
 from typing import TYPE_CHECKING, Annotated, Any
 
 import tyro
@@ -11,6 +12,7 @@ import tyro
 from daemon.errors import CommandError
 
 if TYPE_CHECKING:
+    from mmm_core.generate.sentence_reader import SentenceReader
     from mmm_core.language.commands import PlainCommand, Reading
     from mmm_core.language.context import InContext
 
@@ -21,8 +23,8 @@ def understand(
 ) -> int:
     """Print the commands that are read in a sentence: in turn, at once, each with its tempo, size and hold, and what is denied.
 
-    Several sentences are a conversation: each may refer to the one before it. Nothing moves, no daemon is needed and no model
-    is loaded; whether the model can do a command is said by `say`. docs/language.md says what is understood.
+    Several sentences are a conversation: each may refer to the one before it. Nothing moves, no daemon is needed and no motion
+    model is loaded; whether the model can do a command is said by `say`. docs/language.md says what is understood.
 
     Example: mmmd understand "left hand on your heart and salute with the right, then bow very slowly"
 
@@ -38,7 +40,7 @@ def understand(
     if not texts:
         raise CommandError('no sentence; e.g. mmmd understand "wave with your left hand"')
     try:
-        meant = conversation(texts)
+        meant = conversation(texts, _read)
     except NothingToReferToError as error:
         raise CommandError(f"{error}; say the whole command") from None
     if json:
@@ -49,6 +51,22 @@ def understand(
         said = [f"> {text}"] if len(texts) > 1 else []
         sys.stdout.write("".join(f"{line}\n" for line in said + _lines(found)))
     return 0
+
+
+def _read(text: str) -> Reading:
+    """The reading of a text; the tagger, and PyTorch with it, is loaded where the rules are not sure."""
+    from mmm_core.language.reading import read
+    from mmm_core.language.tagged_reading import is_sure
+
+    by_rules = read(text)
+    return by_rules if is_sure(by_rules) else _reader().read(text)
+
+
+@cache
+def _reader() -> SentenceReader:
+    from mmm_core.generate.sentence_reader import SentenceReader
+
+    return SentenceReader.load()
 
 
 def _object(meant: InContext | Reading) -> dict[str, Any]:

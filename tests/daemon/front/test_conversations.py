@@ -73,6 +73,13 @@ def test_a_text_becomes_what_it_means_and_says_to_what_it_refers(desk):
     )
 
 
+def test_a_text_refers_to_what_the_generator_read_in_the_last_one(desk):
+    entry = desk.ledger.open(Say(text="tap your imaginary stand twice, and give them a slow three-beat"), ROUTE, 0)
+    desk.talk.take(entry, ANNA)
+    desk._emit(entry, ACCEPTED(commands=("clap twice", "bow (0.62 times as fast) + nod")))
+    assert desk.say(Say(text="again")).request.text == "exactly: clap twice; bow (0.62 times as fast) + nod"
+
+
 def test_a_continuing_motion_loops_until_a_number_is_named(desk):
     desk.say(Say(text="clap"))
     assert desk.say(Say(text="keep going"), ends="").request.loop

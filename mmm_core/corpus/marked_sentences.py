@@ -1,0 +1,93 @@
+"""Sentences with marks around their commands: what the sentence tagger learns from.
+
+A sentence is written with all its words, and brackets around those that matter: `[1 ...]` a command of the first step, `[2a ...]` and
+`[2b ...]` commands of the second step at the same time, `[- ...]` an act that is denied, `[* ...]` words for all commands, `[x ...]` words that
+the speaker takes back. Words outside brackets are not needed: politeness, audiences, reasons, words of order.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from pathlib import Path
+
+from mmm_core.errors import TrainingDataError
+from mmm_core.language.tagged_words import AGAIN, BEFORE, DENIED, FOR_ALL, INSIDE, OUTSIDE, THEN, WITH, words_of
+
+MARKED_SENTENCES = Path(__file__).parent / "prompts" / "marked_sentences.txt"
+"""The sentences that ship, one a line; lines that begin with # are comments."""
+_MARK = re.compile(r"\[(?P<label>\d[a-z]?|[-*xX]) (?P<words>[^\[\]]*)\]")
+_BESIDE = {"-": DENIED, "*": FOR_ALL, "x": OUTSIDE}
+
+
+@dataclass(frozen=True)
+class TaggedSentence:
+    """The words of a sentence, punctuation marks included, with the tag of each (`mmm_core.language.tagged_words.TAGS`)."""
+
+    words: tuple[str, ...]
+    tags: tuple[str, ...]
+
+
+def read_marked(line: str, path: Path = MARKED_SENTENCES) -> tuple[str, list[str]]:
+    """A marked sentence as plain text, and the tag of each of its words.
+
+    Args:
+        line: the marked sentence.
+        path: its file, which an error names.
+
+    Raises:
+        TrainingDataError: a bracket is open, nested or without a label.
+
+    >>> read_marked("before you [2 clap], [1 raise your arms]")
+    ('before you clap, raise your arms', ['outside', 'outside', 'then', 'outside', 'before', 'inside', 'inside'])
+    """
+    sentence, marks, at = "", [], 0
+    for mark in _MARK.finditer(line):
+        sentence += line[at : mark.start()]
+        marks.append((len(sentence), len(sentence) + len(mark["words"]), mark["label"].lower()))
+        sentence, at = sentence + mark["words"], mark.end()
+    sentence += line[at:]
+    if "[" in sentence or "]" in sentence:
+        raise TrainingDataError(
+            path, "", f"a bracket that is no mark in {line!r}", "[1 ...], [2a ...], [- ...], [* ...] or [x ...]"
+        )
+    spans = words_of(sentence)
+    tags = [OUTSIDE] * len(spans)
+    seen: list[str] = []
+    for start, end, label in marks:
+        inside = [i for i, (a, b) in enumerate(spans) if a >= start and b <= end]
+        for i in inside:
+            tags[i] = _BESIDE.get(label, INSIDE)
+        if label not in _BESIDE and inside:
+            tags[inside[0]] = _relation(label, seen)
+            seen = [*(other for other in seen if other != label), label]
+    return sentence, tags
+
+
+def load_marked_sentences(path: Path = MARKED_SENTENCES) -> list[TaggedSentence]:
+    """The sentences of a file.
+
+    Raises:
+        TrainingDataError: the file is missing, or a line is not well marked.
+    """
+    try:
+        lines = path.read_text("utf-8").splitlines()
+    except OSError as error:
+        raise TrainingDataError(path, "", f"cannot be read ({error})", "marked sentences, one a line") from error
+    found: list[TaggedSentence] = []
+    for line in lines:
+        if line.strip() and not line.startswith("#"):
+            sentence, tags = read_marked(line.strip(), path)
+            found.append(TaggedSentence(tuple(sentence[a:b] for a, b in words_of(sentence)), tuple(tags)))
+    return found
+
+
+def _relation(label: str, seen: list[str]) -> str:
+    """The tag of a command's first word, after the labels of the commands before it in the sentence."""
+    if not seen:
+        return THEN
+    if label in seen:
+        return AGAIN
+    if label[0] == seen[-1][0]:
+        return WITH
+    return THEN if label[0] > seen[-1][0] else BEFORE

@@ -1,0 +1,171 @@
+"""Reads a sentence with the help of tags: they divide it into commands, the rules read each command.
+
+Rules alone (`mmm_core.language.reading`) divide sentences in phrasings that their tables have; a tagger learnt it from sentences of
+many writers. Each command that the tags mark is completed with the words that it omits and read by the rules.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from itertools import chain, pairwise
+
+from mmm_core.language.clause_patterns import BEGINS_WITH_A_VERB
+from mmm_core.language.commands import MOST_AT_ONCE, MOST_STEPS, PlainCommand, Reading
+from mmm_core.language.completed_at_once import beside_each_other
+from mmm_core.language.ellipsis import OTHER, completed
+from mmm_core.language.known_phrases import is_known_phrase
+from mmm_core.language.limbs import is_gesture_verb, limbs_of
+from mmm_core.language.one_arm import of_one_arm
+from mmm_core.language.reading import command_of, read
+from mmm_core.language.requests import without_request
+from mmm_core.language.spelling import mended
+from mmm_core.language.stop_words import means_stop
+from mmm_core.language.tagged_words import BEFORE, BEGINS, INSIDE, THEN, WITH, MarkedCommands, marked_commands, words_of
+
+_JOINS = re.compile(
+    r"[,;:.]|\b(?:and|then|while|but|before|after|once (?:you|the|they|it|he|she|i|we|that)|when|as|so|that|if|because|for)\b"
+)
+"""Marks and words of which a single command seldom has one: more than one command, a reason or a story may be left in it."""
+_LIMB_FIRST = re.compile(
+    r"(?:your |both |the )?(?:left |right )?(?:hands?|arms?|head|fists?|palms?|shoulders?|elbows?)\b"
+)
+_LIMB_ALONE = re.compile(rf"^(?:(?:and |with )*{_LIMB_FIRST.pattern}(?: one)?|(?:the |your )?eyes|that)$")
+_STOPS = re.compile(r"^(?:then )?stop\b(?! sign)")
+_IS_OPEN = re.compile(
+    r"\b(?:to|as if|how|then|an?|the|with|without|of|and)$|^(?:mime|pretend|act|make|do|does|with)\b(?: \w+)?$"
+)
+_NOUN_FIRST = re.compile(r"(?:an?|one|two|three|\w+) \w+")
+_AND = re.compile(r"\band\b ?")
+_SIDE_AND_WAY = re.compile(
+    r"(?:and |your |the )*(?P<side>left|right|other)(?: one)? "
+    r"(?P<way>(?:up|down|out|forwards?|backwards?|back|in|on|at|behind|over|to|by|across|overhead|sideways|straight|high|low)\b.*)"
+)
+_SIDED_LIMB = re.compile(
+    r"(?P<your>\b(?:your|the) )?\b(?P<side>left|right) (?P<limb>hand|arm|fist|palm|elbow|wrist|shoulder|thumb)\b"
+)
+_IS_CAPTION = re.compile(
+    r"(?:(?:the|an?|this|some) (?:\w+ )?(?:person|man|woman|human|humanoid|robot|character|figure)|someone|somebody)\b"
+)
+"""The beginning of a caption of one motion, such as the corpus has: "a man is shooting out their right hand to intercept it"."""
+_BESIDE = re.compile(
+    r"(?:,? (?:exactly|just|only))* (?:(?:\w+ times?|a single time)(?: in a row)?|once|twice)\b|"
+    r"(?: with| using) (?:the|your|their|his|her|its|both) (?:left |right )?(?:arm|hand)s?\b"
+)
+"""Number of strokes and hand of a command."""
+_LONGEST_SURE = 9
+"""Words of a command that the rules are sure of, at most."""
+_ALL = re.compile(r"^(?:all(?: of (?:it|them|that))?|both|everything|each)\b ?")
+
+
+def is_sure(reading: Reading) -> bool:
+    """Whether the rules read it rightly in all likelihood.
+
+    Each command is a phrase of the corpus, or is short, begins as a command does, and has no word that joins commands.
+    """
+    commands = [command.text.lower() for step in reading.steps for command in step]
+    if not commands:
+        return bool(reading.denied)
+    if len(commands) == 1 and _IS_CAPTION.match(commands[0]):
+        return True
+    return all(is_known_phrase(_BESIDE.sub("", command)) or _is_simple(command) for command in commands)
+
+
+def _is_simple(command: str) -> bool:
+    words = command.split()
+    if len(words) > _LONGEST_SURE or _JOINS.search(command.rstrip(" .")):
+        return False
+    begins = _begins_with_a_verb(command) or _LIMB_FIRST.match(command) is not None
+    return begins or (_NOUN_FIRST.match(command) is not None and bool(limbs_of(command)))
+
+
+def read_with_tags(by_rules: Reading, tags: Sequence[str]) -> Reading:
+    """The commands of a sentence that the rules are not sure of (`is_sure`).
+
+    Args:
+        by_rules: the sentence as the rules read it. It stands where the tags divide the sentence in the same way, mark no command,
+            or mark words that are none.
+        tags: a tag for each of the sentence's words (`mmm_core.language.tagged_words`).
+    """
+    marked = marked_commands(by_rules.text, _without_splits(by_rules.text, tags))
+    if not _can_be_read(marked):
+        return by_rules
+    by_tags = _read_marked(by_rules.text, marked)
+    if by_rules.denied and not by_tags.denied:  # what is denied must not be done
+        return by_rules
+    if not all(_stands_alone(command.text) for step in by_tags.steps for command in step):
+        return by_rules
+    if _shape(by_rules) == _shape(by_tags) and not (by_rules.denied and is_sure(by_tags)):
+        return by_rules
+    return by_tags
+
+
+def _stands_alone(command: str) -> bool:
+    """Whether words are a command: they begin with a verb, or name a limb and more than the limb, and do not say to stop."""
+    if means_stop(command) or any(pattern.search(command) for pattern in (_STOPS, _LIMB_ALONE, _IS_OPEN)):
+        return False
+    return _begins_with_a_verb(command) or bool(limbs_of(command)) or is_known_phrase(command)
+
+
+def _begins_with_a_verb(words: str) -> bool:
+    return BEGINS_WITH_A_VERB.match(words) is not None or is_gesture_verb(words.partition(" ")[0])
+
+
+def _without_splits(text: str, tags: Sequence[str]) -> list[str]:
+    """Tags in which a command that follows another one without any word between begins with the verb of a gesture.
+
+    Such a beginning is more often an error of the tagger ("shrug | your shoulders") than a list without marks ("nod shrug wave").
+    """
+    found = list(tags)
+    for i, ((start, _end), (before, tag)) in enumerate(zip(words_of(text)[1:], pairwise(tags), strict=True), 1):
+        follows = before == INSIDE or before in BEGINS
+        if follows and tag in (THEN, WITH, BEFORE) and not _begins_with_a_verb(text[start:].lower()):
+            found[i] = INSIDE
+    return found
+
+
+def _can_be_read(marked: MarkedCommands) -> bool:
+    sizes = [len(step) for step in marked.steps]
+    return bool(sizes) and len(sizes) <= MOST_STEPS and max(sizes) <= MOST_AT_ONCE
+
+
+def _shape(reading: Reading) -> tuple[list[int], bool]:
+    return [len(step) for step in reading.steps], bool(reading.denied)
+
+
+def _read_marked(text: str, marked: MarkedCommands) -> Reading:
+    for_all = _AND.sub("", " ".join(_ALL.sub("", _plain(words)) for words in marked.for_all))
+    verb_of_all = _begins_with_a_verb(for_all)
+    steps: list[list[str]] = []
+    before = ""
+    for step in marked.steps:
+        commands: list[str] = []
+        for words in step:
+            said = without_request(_plain(words))
+            if verb_of_all and not (_begins_with_a_verb(said) or _LIMB_FIRST.match(said)):
+                said = f"{for_all} {said}"
+            before = (_of_the_other_limb(said, before) or completed(said, before) or said) if before else said
+            commands.append(before)
+        steps.append(beside_each_other(commands) if len(commands) > 1 else commands)
+    beside = f" {for_all}" if for_all and not verb_of_all else ""
+    with_arms = iter(of_one_arm([command + beside for command in chain.from_iterable(steps)]))
+    return Reading(text, tuple(tuple(_one_command(next(with_arms)) for _ in step) for step in steps), marked.denied)
+
+
+def _plain(words: str) -> str:
+    return mended(words).strip(" ,.!?;:")
+
+
+def _of_the_other_limb(said: str, before: str) -> str:
+    """A command that names a side and a way alone, with verb and limb of the command before: "the left one back"; else empty."""
+    found, last = _SIDE_AND_WAY.fullmatch(said), _SIDED_LIMB.search(before)
+    if found is None or last is None:
+        return ""
+    side = found["side"] if found["side"] != "other" else OTHER[last["side"]]
+    return f"{before[: last.start()]}{last['your'] or ''}{side} {last['limb']} {found['way']}"
+
+
+def _one_command(words: str) -> PlainCommand:
+    """The command of words that the tags hold to be one command."""
+    steps = read(words).steps
+    return steps[0][0] if [len(step) for step in steps] == [1] else command_of(words)

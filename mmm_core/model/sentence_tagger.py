@@ -1,0 +1,98 @@
+"""Tags the words of a sentence: which belong to a command, which are denied, and how commands follow each other.
+
+The lower layers are the text encoder's own; the tagger adds copies of its next layers, trained further, and a linear layer. A
+word is tagged by the state of its first word piece.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import torch
+import torch.nn.functional as F
+from torch import Tensor, nn
+
+from mmm_core.model.text import MiniLm, MiniLmConfig, WordLayer
+
+
+@dataclass(frozen=True)
+class TaggerConfig:
+    """Sizes of a tagger.
+
+    Attributes:
+        n_tags: number of tags.
+        n_shared: layers of the text encoder that the tagger uses as they are.
+        n_own: layers of its own above them.
+    """
+
+    n_tags: int = 8
+    n_shared: int = 3
+    n_own: int = 3
+
+
+class SentenceTagger(nn.Module):
+    """Tagger of words above the lower layers of a text encoder, which is no part of its weights."""
+
+    def __init__(self, config: TaggerConfig, text: MiniLmConfig) -> None:
+        super().__init__()
+        self.config = config
+        self.layers = nn.ModuleList(WordLayer(text) for _ in range(config.n_own))
+        self.tag = nn.Linear(text.width, config.n_tags)
+
+    def forward(self, states: Tensor, mask: Tensor, first_pieces: Tensor, dropout: float = 0.0) -> Tensor:
+        """Scores (B, N, tags) of words.
+
+        Args:
+            states: (B, W, D) states of word pieces after the encoder's shared layers.
+            mask: (B, W) bool, true where there is a word piece.
+            first_pieces: (B, N) index of each word's first piece.
+            dropout: share of the values that training drops after each layer.
+        """
+        x = F.dropout(states, dropout, self.training)
+        for layer in self.layers:
+            x = F.dropout(layer(x, mask[:, None, None, :]), dropout, self.training)
+        words = x.gather(1, first_pieces[..., None].expand(-1, -1, x.shape[-1]))
+        scores: Tensor = self.tag(words)
+        return scores
+
+
+@dataclass(frozen=True)
+class WordStates:
+    """States of the word pieces of one sentence after the shared layers.
+
+    Attributes:
+        states: (W, D).
+        first_pieces: (N,) index of each word's first piece.
+    """
+
+    states: Tensor
+    first_pieces: Tensor
+
+
+@torch.inference_mode()
+def word_states(encoder: MiniLm, n_shared: int, sentences: Sequence[Sequence[str]]) -> list[WordStates]:
+    """States of sentences that are given as words, in one batch; a word beyond the encoder's longest text has the last piece's."""
+    encoded = [encoder.word_pieces.encode(list(words), is_pretokenized=True) for words in sentences]
+    width = max(len(e.ids) for e in encoded)
+    ids = torch.tensor([e.ids + [0] * (width - len(e.ids)) for e in encoded])
+    mask = torch.tensor([[True] * len(e.ids) + [False] * (width - len(e.ids)) for e in encoded])
+    states = encoder.lower_states(ids, mask, n_shared)
+    found: list[WordStates] = []
+    for row, (e, words) in enumerate(zip(encoded, sentences, strict=True)):
+        first: dict[int, int] = {}
+        for piece, word in enumerate(e.word_ids):
+            if word is not None:
+                first.setdefault(word, piece)
+        last = len(e.ids) - 1
+        index = torch.tensor([first.get(word, last) for word in range(len(words))])
+        found.append(WordStates(states[row, : len(e.ids)].clone(), index))
+    return found
+
+
+@torch.inference_mode()
+def log_probability(tagger: SentenceTagger, encoder: MiniLm, words: Sequence[str]) -> Tensor:
+    """(N, tags) log-probability of each tag for each word of one sentence."""
+    (found,) = word_states(encoder, tagger.config.n_shared, [words])
+    mask = torch.ones(1, len(found.states), dtype=torch.bool)
+    return F.log_softmax(tagger(found.states[None], mask, found.first_pieces[None])[0].float(), -1)

@@ -1,0 +1,56 @@
+"""Marked sentences, which the sentence tagger learns from."""
+
+from __future__ import annotations
+
+import json
+import re
+from pathlib import Path
+
+import pytest
+
+from mmm_core.corpus.marked_sentences import MARKED_SENTENCES, load_marked_sentences, read_marked
+from mmm_core.errors import TrainingDataError
+from mmm_core.language.tagged_words import marked_commands
+
+PROMPTS = MARKED_SENTENCES.parent
+
+
+def _letters(text: str) -> str:
+    return re.sub(r"[^a-z0-9]+", " ", text.lower()).strip()
+
+
+def _lines() -> list[str]:
+    return [line for line in MARKED_SENTENCES.read_text("utf-8").splitlines() if line and not line.startswith("#")]
+
+
+def test_marks_become_tags_that_mark_the_same_commands() -> None:
+    n_commands = 0
+    for line in _lines():
+        marked = marked_commands(*read_marked(line))
+        labels = re.findall(r"\[(\d[a-z]?) ", line)
+        assert sum(map(len, marked.steps)) == len(set(labels)), line
+        assert len(marked.steps) == len({label[0] for label in labels}), line
+        assert bool(marked.denied) == ("[- " in line), line
+        n_commands += len(set(labels))
+    assert n_commands > 5000
+
+
+def test_no_marked_sentence_is_one_of_the_sentences_that_measure_it() -> None:
+    measured: set[str] = set()
+    for path in PROMPTS.glob("words_*.jsonl"):
+        measured |= {_letters(json.loads(line)["text"]) for line in path.read_text("utf-8").splitlines()}
+    assert len(measured) > 500
+    assert not measured & {_letters(read_marked(line)[0]) for line in _lines()}
+
+
+@pytest.mark.parametrize("line", ["[1 nod", "nod]", "[nod]", "[1 nod [2 bow]]", "[10 nod]"])
+def test_a_bracket_that_is_no_mark_is_refused_by_file_and_line(line: str, tmp_path: Path) -> None:
+    path = tmp_path / "sentences.txt"
+    path.write_text(f"# a comment\n[1 clap]\n{line}\n", "utf-8")
+    with pytest.raises(TrainingDataError, match=re.escape(repr(line))):
+        load_marked_sentences(path)
+
+
+def test_a_missing_file_is_named(tmp_path: Path) -> None:
+    with pytest.raises(TrainingDataError, match="nowhere"):
+        load_marked_sentences(tmp_path / "nowhere.txt")

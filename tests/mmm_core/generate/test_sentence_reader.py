@@ -1,0 +1,56 @@
+"""Sentences of a writer who saw neither rules nor marked sentences, read by rules alone and with the tagger."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from mmm_core.generate.sentence_reader import SentenceReader
+from mmm_core.language.commands import Reading
+from mmm_core.language.reading import read
+
+SENTENCES = Path(__file__).parent / "divided_sentences.jsonl"
+"""120 sentences with the number of commands of each step, and whether something is denied."""
+
+
+@pytest.fixture(scope="module")
+def reader() -> SentenceReader:
+    return SentenceReader.load()
+
+
+def _division(reading: Reading) -> tuple[list[int], bool]:
+    return [len(step) for step in reading.steps], bool(reading.denied)
+
+
+def test_it_divides_more_sentences_as_meant_than_the_rules_alone(reader: SentenceReader) -> None:
+    given = [json.loads(line) for line in SENTENCES.read_text("utf-8").splitlines()]
+    meant = [(one["steps"], one["denied"]) for one in given]
+    by_rules = sum(_division(read(one["text"])) == m for one, m in zip(given, meant, strict=True))
+    by_reader = sum(_division(reader.read(one["text"])) == m for one, m in zip(given, meant, strict=True))
+    assert len(given) == 120
+    assert by_reader >= by_rules + 10
+    assert by_reader >= 102
+
+
+@pytest.mark.parametrize(
+    ("sentence", "steps"),
+    [
+        ("Stretch upward and when you're done let everything hang loose",
+         [["stretch upward"], ["let everything hang loose"]]),
+        ("Swing your right arm forwards and the left backwards.",
+         [["swing your right arm forwards", "swing your left arm backwards"]]),
+        ("Blow a kiss, but put your hand on your heart beforehand", [["put your hand on your heart"], ["blow a kiss"]]),
+        ("wave", [["wave"]]),
+    ],
+)  # fmt: skip
+def test_a_sentence_is_divided_and_completed(reader: SentenceReader, sentence: str, steps: list[list[str]]) -> None:
+    assert [[command.text for command in step] for step in reader.read(sentence).steps] == steps
+
+
+@pytest.mark.parametrize(
+    "text", ["wave with your right hand", "exactly: nod (0.62 times as fast) + clap", "", "!?", "x " * 500]
+)
+def test_what_the_rules_are_sure_of_or_cannot_be_tagged_is_read_as_before(reader: SentenceReader, text: str) -> None:
+    assert reader.read(text) == read(text)

@@ -1,0 +1,71 @@
+"""Reading of sentences whose words are tagged: the tags are written as marks (`mmm_core.corpus.marked_sentences`)."""
+
+from __future__ import annotations
+
+import pytest
+
+from mmm_core.corpus.marked_sentences import read_marked
+from mmm_core.language.reading import read
+from mmm_core.language.tagged_reading import is_sure, read_with_tags
+
+
+def _read(marked: str) -> tuple[list[list[str]], tuple[str, ...]]:
+    sentence, tags = read_marked(marked)
+    reading = read_with_tags(read(sentence), tags)
+    return [[command.sentence for command in step] for step in reading.steps], reading.denied
+
+
+@pytest.mark.parametrize(
+    ("marked", "steps"),
+    [
+        ("[1a Swing your right arm forwards] and [1b the left backwards].",
+         [["swing your right arm forwards", "swing your left arm backwards"]]),
+        ("[1a hold your left palm up] and [1b the right one down]",
+         [["hold your left palm up", "hold your right palm down"]]),
+        ("[1 lean to the right a little] and [2 to the left a lot]",
+         [["lean to the right (0.6 times as large)"], ["lean to the left (1.4 times as large)"]]),
+        ("[2 Blow a kiss], but [1 put your hand on your heart] beforehand, and end on [3 a little bow]",
+         [["put your hand on your heart"], ["a bow (0.6 times as large)"], ["blow a kiss"]]),
+        ("Start by [1 saluting], follow with [2 a quick nod], and finish with [3 your hands behind your back].",
+         [["salute"], ["a nod (1.6 times as fast)"], ["put your hands behind your back"]]),
+        ("[* all slowly and with your left hand]: [1 wave], [2 salute]",
+         [["wave with your left hand (0.62 times as fast)"], ["salute with your left hand (0.62 times as fast)"]]),
+        ("[1 look up], then [2 down], then [3 at me] and [4 wave]",
+         [["look up"], ["look down"], ["look straight ahead"], ["wave"]]),
+    ],
+)  # fmt: skip
+def test_each_marked_command_is_completed_and_read_by_the_rules(marked: str, steps: list[list[str]]) -> None:
+    assert _read(marked)[0] == steps
+
+
+def test_what_is_denied_is_kept_apart() -> None:
+    assert _read("I said not to [- clap] so [1 shrug] for them") == ([["shrug"]], ("clap",))
+
+
+def test_a_denial_of_the_rules_is_kept_where_the_tags_have_none() -> None:
+    sentence, tags = read_marked("Don't you go [1 nodding at me], young man.")
+    assert read_with_tags(read(sentence), tags).denied
+
+
+def test_tags_without_a_command_leave_the_reading_of_the_rules() -> None:
+    sentence = "wave and so on, if you like"
+    by_rules = read(sentence)
+    assert read_with_tags(by_rules, read_marked(sentence)[1]) is by_rules
+
+
+@pytest.mark.parametrize(
+    "sentence", ["wave", "Nod your head.", "turn your head left, then right", "arms wide and nod", "a big bow"]
+)
+def test_rules_are_sure_of_short_commands(sentence: str) -> None:
+    assert is_sure(read(sentence))
+
+
+@pytest.mark.parametrize(
+    "sentence",
+    [
+        "Stretch upward and when you're done let everything hang loose",
+        "put your hand on your heart, but before you do that, could you blow a kiss",
+    ],
+)
+def test_rules_are_not_sure_where_words_that_join_are_left(sentence: str) -> None:
+    assert not is_sure(read(sentence))
