@@ -3,10 +3,20 @@
 from __future__ import annotations
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from mmm_core.corpus.marked_sentences import read_marked
 from mmm_core.language.reading import read
 from mmm_core.language.tagged_reading import is_sure, read_with_tags
+from mmm_core.language.tagged_words import TAGS, words_of
+
+SENTENCES = (
+    "clap, but do not bow",
+    "wave with anything but your left hand",
+    "don't nod at me, young man",
+    "nod and then wave twice",
+)
 
 
 def _read(marked: str) -> tuple[list[list[str]], tuple[str, ...]]:
@@ -69,3 +79,20 @@ def test_rules_are_sure_of_short_commands(sentence: str) -> None:
 )
 def test_rules_are_not_sure_where_words_that_join_are_left(sentence: str) -> None:
     assert not is_sure(read(sentence))
+
+
+@given(st.text(st.characters(codec="utf-8"), max_size=60), st.data())
+def test_any_text_with_any_tags_is_read(sentence: str, data: st.DataObject) -> None:
+    n_words = len(words_of(sentence))
+    tags = data.draw(st.lists(st.sampled_from(TAGS), min_size=n_words, max_size=n_words))
+    reading = read_with_tags(read(sentence), tags)
+    assert reading.text == sentence
+    assert reading.steps or reading.denied
+
+
+@given(st.sampled_from(SENTENCES), st.data())
+def test_whatever_the_tags_what_the_rules_deny_stays_denied(sentence: str, data: st.DataObject) -> None:
+    n_words = len(words_of(sentence))
+    by_rules = read(sentence)
+    reading = read_with_tags(by_rules, data.draw(st.lists(st.sampled_from(TAGS), min_size=n_words, max_size=n_words)))
+    assert bool(reading.denied) or not by_rules.denied
