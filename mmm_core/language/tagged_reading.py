@@ -33,7 +33,8 @@ _LIMB_FIRST = re.compile(
 _LIMB_ALONE = re.compile(rf"^(?:(?:and |with )*{_LIMB_FIRST.pattern}(?: one)?|(?:the |your )?eyes|that)$")
 _STOPS = re.compile(r"^(?:then )?stop\b(?! sign)")
 _IS_OPEN = re.compile(
-    r"\b(?:to|as if|how|then|an?|the|with|without|of|and)$|^(?:mime|pretend|act|make|do|does|with)\b(?: \w+)?$"
+    r"\b(?:to|as|as if|like|how|that|who|then|an?|the|with|without|of|for|from|and)$|"
+    r"^(?:mime|pretend|act|make|do|does|with)\b(?: \w+)?$"
 )
 _NOUN_FIRST = re.compile(r"(?:an?|one|two|three|\w+) \w+")
 _AND = re.compile(r"\band\b ?")
