@@ -10,7 +10,7 @@ import re
 from collections.abc import Sequence
 from itertools import chain, pairwise
 
-from mmm_core.language.clause_patterns import BEGINS_WITH_A_VERB
+from mmm_core.language.clause_patterns import BEGINS_WITH_A_VERB, LIMB_FIRST
 from mmm_core.language.commands import MOST_AT_ONCE, MOST_STEPS, PlainCommand, Reading
 from mmm_core.language.completed_at_once import beside_each_other
 from mmm_core.language.ellipsis import OTHER, completed
@@ -27,10 +27,10 @@ _JOINS = re.compile(
     r"[,;:.]|\b(?:and|then|while|but|before|after|once (?:you|the|they|it|he|she|i|we|that)|when|as|so|that|if|because|for)\b"
 )
 """Marks and words of which a single command seldom has one: more than one command, a reason or a story may be left in it."""
-_LIMB_FIRST = re.compile(
-    r"(?:your |both |the )?(?:left |right )?(?:hands?|arms?|head|fists?|palms?|shoulders?|elbows?)\b"
+_LIMB_ALONE = re.compile(
+    r"^(?:(?:and |with )*(?:your |both |the )?(?:left |right )?(?:hands?|arms?|head|fists?|palms?|shoulders?|elbows?)(?: one)?|"
+    r"(?:the |your )?eyes|that)$"
 )
-_LIMB_ALONE = re.compile(rf"^(?:(?:and |with )*{_LIMB_FIRST.pattern}(?: one)?|(?:the |your )?eyes|that)$")
 _STOPS = re.compile(r"^(?:then )?stop\b(?! sign)")
 _IS_OPEN = re.compile(
     r"\b(?:to|as|as if|like|how|that|who|then|an?|the|with|without|of|for|from|and)$|"
@@ -76,7 +76,7 @@ def _is_simple(command: str) -> bool:
     words = command.split()
     if len(words) > _LONGEST_SURE or _JOINS.search(command.rstrip(" .")):
         return False
-    begins = _begins_with_a_verb(command) or _LIMB_FIRST.match(command) is not None
+    begins = _begins_with_a_verb(command) or LIMB_FIRST.match(command) is not None
     return begins or (_NOUN_FIRST.match(command) is not None and bool(limbs_of(command)))
 
 
@@ -143,7 +143,7 @@ def _read_marked(text: str, marked: MarkedCommands) -> Reading:
         commands: list[str] = []
         for words in step:
             said = without_request(_plain(words))
-            if verb_of_all and not (_begins_with_a_verb(said) or _LIMB_FIRST.match(said)):
+            if verb_of_all and not (_begins_with_a_verb(said) or LIMB_FIRST.match(said)):
                 said = f"{for_all} {said}"
             before = (_of_the_other_limb(said, before) or completed(said, before) or said) if before else said
             commands.append(before)

@@ -50,7 +50,7 @@ def test_the_letters_that_a_pattern_needs(pattern: str, needed: set[str]) -> Non
 
 
 def test_a_pattern_is_what_re_compiles() -> None:
-    """It is compiled from what the parser found, which `re` does from a text alone."""
+    """`compiled` compiles the parsed pattern; `re.compile` would parse the text a second time."""
     text = r"^(?P<who>you|we) (wave|nod)\b(?: twice)?$"
     ours, theirs = compiled(text)[0], re.compile(text)
     assert (ours.flags, ours.groups, ours.groupindex) == (theirs.flags, theirs.groups, theirs.groupindex)
