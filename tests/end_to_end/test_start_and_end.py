@@ -137,7 +137,7 @@ def test_a_wrong_baud_and_other_servos_show_a_table(tty, tmp_path):
 @pytest.mark.parametrize("ends", few_and_long([signal.SIGINT], [signal.SIGTERM]))
 def test_a_text_moves_over_a_tty_and_a_signal_in_a_motion_parks(tty, ends):
     """SIGTERM ends every daemon of `running_daemon`, whose robot has to be parked then."""
-    daemon = RunningDaemon(robot="op3", bus=tty.url(baud_of("op3")))
+    daemon = RunningDaemon(robot="op3", bus=tty.url(baud_of("op3")), fresh=True)
     try:
         daemon.until_ready()
         said = daemon.mmmd("say", "wave with your right hand")

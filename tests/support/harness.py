@@ -27,6 +27,7 @@ from daemon.scheduling.command_queue import SHADOW_S
 from daemon.settings.config import Endpoints
 from daemon.wire.events import Done
 from retarget.robot.loading import ROBOTS_DIR
+from tests.support.forked import ForkedCommand
 from tests.support.kinematic import KinematicGenerator, generate
 
 Answer = Callable[[str, int, float | None], Generated]
@@ -36,9 +37,6 @@ RATE_HZ = 50
 """Bus cycles per second of test daemons: half the rate of `reference`, since the bus process is a daemon's dearest."""
 PATIENT = {"MMMD_GENERATE_TIMEOUT_S": "20"}
 """Seconds until a silent generator is restarted, for a daemon with a model: beside other tests the model may be slow to answer."""
-MOST_CLIPPED_IN_AN_UNDERRUN = 4
-"""Where the machine is held up the bus process brakes; frames that were on their way meanwhile, up to 4 of the 10 that are
-queued, are limited until it goes on."""
 
 
 class RunningDaemon:
@@ -51,6 +49,8 @@ class RunningDaemon:
         model: whether the daemon starts its own generator, with the shipped model.
         answer: of the generator peer to a text.
         tcp: sockets on free ports of this machine instead; "but ctl" for all but the one that takes e-stops.
+        fresh: whether its front is a new Python program, as when a person starts it, and not forked from one that has loaded
+            the daemon's modules.
     """
 
     def __init__(
@@ -61,6 +61,7 @@ class RunningDaemon:
         model: bool = False,
         answer: Answer = generate,
         tcp: bool | Literal["but ctl"] = False,
+        fresh: bool = False,
     ) -> None:
         self._folder = tempfile.TemporaryDirectory(prefix="mmmd-test-")
         self.folder = Path(self._folder.name)
@@ -75,8 +76,8 @@ class RunningDaemon:
             bus = f"sim://?audit={self.audit}"
         generator = [] if model else ["--generator", f"ipc://{self.folder}/gen"]
         self.output = self.folder / "output"
-        self._command = [
-            *MMMD,
+        self._fresh = fresh
+        self._arguments = [
             "run",
             "--robot",
             robot or slow_reference(),
@@ -94,8 +95,14 @@ class RunningDaemon:
 
     def start(self) -> None:
         """Start it, once more where it has ended: at the same sockets, with the same generator peer."""
-        with self.output.open("ab") as out:
-            self.process = subprocess.Popen(self._command, stdout=out, stderr=out, env=self._environment)
+        self.process: subprocess.Popen[bytes] | ForkedCommand
+        if self._fresh:
+            with self.output.open("ab") as out:
+                self.process = subprocess.Popen(
+                    [*MMMD, *self._arguments], stdout=out, stderr=out, env=self._environment
+                )
+        else:
+            self.process = ForkedCommand(self._arguments, self.output, self._environment)
 
     @property
     def at(self) -> list[str]:
@@ -232,7 +239,9 @@ def mmmd(*arguments: str, timeout_s: float = 30.0, **environment: str) -> subpro
 
 
 def plays_well(done: Done) -> bool:
-    """Whether a motion ran dry in less than a twentieth of its frames, and was limited nowhere else than there."""
-    return (
-        20 * done.underruns <= done.frames and done.gate_clipped_frames <= MOST_CLIPPED_IN_AN_UNDERRUN * done.underruns
-    )
+    """Whether a motion ran dry in less than a twentieth of its frames, and the gate changed none of them without that.
+
+    Where the machine holds the front up, the bus process brakes, and then the gate leads the robot back to the moving path: after
+    a single late frame at half of a joint's top speed this takes 35 frames.
+    """
+    return 20 * done.underruns <= done.frames and (done.underruns > 0 or done.gate_clipped_frames == 0)

@@ -47,7 +47,7 @@ def test_a_machine_without_pytorch_runs_gestures_and_says_what_is_missing(tmp_pa
     """`mmmd run` refused to start, although gestures, look, replay and stream need no PyTorch."""
     (tmp_path / "sitecustomize.py").write_text(WITHOUT_TORCH)
     monkeypatch.setenv("PYTHONPATH", os.pathsep.join(filter(None, (str(tmp_path), os.environ.get("PYTHONPATH")))))
-    daemon = RunningDaemon(model=True)
+    daemon = RunningDaemon(model=True, fresh=True)
     try:
         end_s = time.monotonic() + START_TIMEOUT_S
         while "ready: robot" not in daemon.said and time.monotonic() < end_s:

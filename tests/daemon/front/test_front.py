@@ -76,7 +76,8 @@ def test_a_draft_is_played_at_once_and_its_motion_takes_its_place(robot, running
     LET_GO.set()  # the robot moves, and there is nothing but the draft yet
     events += hear(socket, ev.Done)
     assert kinds(events) == ["accepted", "progress", "done"]
-    assert events[0].duration_s == 3.0 and 2.9 < events[-1].duration_s < 4.0
+    # The draft alone lasts 1.5 s; of the motion at most 0.15 s are left out, in which the person still stands.
+    assert events[0].duration_s == 3.0 and 2.8 < events[-1].duration_s < 4.0
     assert plays_well(events[-1])
 
 
