@@ -22,14 +22,12 @@ from retarget.robot.kinematics import Kinematics
 from retarget.robot.robot import RobotModel
 from retarget.robot_to_human import joints_of_path
 
-scipy_signal: Any = importlib.import_module("scipy.signal")  # it has no types
 Array = NDArray[np.float64]
 Sides = Literal["left", "right", "both"]
 
 CUTOFF_HZ = 4.0
 """Movements of a led arm lie below it (our estimate: a quick wave has 2 to 3 Hz), steps of encoders and a shaking hand above."""
 _ORDER = 2
-_LOW_PASS: Any = scipy_signal.butter(_ORDER, CUTOFF_HZ, fs=FPS, output="sos")
 STILL_RAD = float(np.deg2rad(2.0))
 """Radians that no joint exceeds, against its first or last angle, in an end that counts as still."""
 KEPT_STILL_FRAMES = 4
@@ -141,8 +139,10 @@ def arms_alone(robot: RobotModel, q_rad: Array, sides: Sides) -> Array:
 
 def smoothed(q_rad: Array) -> Array:
     """(T, J) positions without movement faster than `CUTOFF_HZ`, without delay (filtered forward and backward, scipy)."""
+    signal: Any = importlib.import_module("scipy.signal")  # it has no types, and takes half a second to import
+    low_pass = signal.butter(_ORDER, CUTOFF_HZ, fs=FPS, output="sos")
     padding = min(3 * (2 * _ORDER + 1), len(q_rad) - 1)
-    return np.asarray(scipy_signal.sosfiltfilt(_LOW_PASS, q_rad, axis=0, padlen=padding), np.float64)
+    return np.asarray(signal.sosfiltfilt(low_pass, q_rad, axis=0, padlen=padding), np.float64)
 
 
 def still_ends_cut(q_rad: Array) -> Array:

@@ -13,8 +13,6 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-import matplotlib
-import matplotlib.pyplot
 import numpy as np
 import pytest
 from mcap.reader import make_reader
@@ -184,6 +182,8 @@ def test_figures_of_a_log(log: Path) -> None:
 
 def test_a_log_in_a_notebook(log: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
     """The test runs the cells in turn, as a reader does; the notebook is kept without outputs."""
+    import matplotlib.pyplot  # slow to import, and every worker of xdist collects this file
+
     notebook = json.loads((EXAMPLES / "log.ipynb").read_text())
     assert notebook["nbformat"] == 4 and all(cell["id"] for cell in notebook["cells"])
     cells = [cell for cell in notebook["cells"] if cell["cell_type"] == "code"]

@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from numpy.typing import NDArray
-from scipy.optimize import minimize
 
 from retarget.path.arm_program import ArmProgram, Frames, Rooms, Steady
 
@@ -28,6 +27,8 @@ def _frames(points: Array) -> Array:
 @pytest.mark.parametrize("seed", range(4))
 def test_it_finds_what_slsqp_finds(seed: int) -> None:
     """Costs of frames, boxes on positions and differences, and two soft distances, of a frame and of a control point."""
+    from scipy.optimize import minimize  # slow to import, and every worker of xdist collects this file
+
     rng = np.random.default_rng(seed)
     root = rng.normal(size=(_N, _JOINTS, _JOINTS))
     costs = Frames(0.3 * root @ root.transpose(0, 2, 1), rng.normal(size=(_N, _JOINTS)))

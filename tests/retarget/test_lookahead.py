@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from scipy.optimize import LinearConstraint, minimize
 
 from retarget.path.limit_path import limit_path
 from retarget.path.limits import JointLimits
@@ -38,6 +37,11 @@ def cost(wish: LeastSquares, near: np.ndarray, path: np.ndarray) -> float:
 
 @pytest.mark.parametrize("seed", range(4))
 def test_joint_by_joint_comes_to_the_optimum_of_all_at_once(seed: int) -> None:
+    from scipy.optimize import (  # slow to import, and every worker of xdist collects this file
+        LinearConstraint,
+        minimize,
+    )
+
     wish, near = program(seed)
     path, inside = near.copy(), np.zeros((1, W), bool)
     costs = []

@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-from scipy.optimize import LinearConstraint, minimize
 
 from daemon.bench.motions import cut
 from daemon.bench.retarget import _fidelity, with_common_limits
@@ -75,6 +74,11 @@ def _missed(retargeter: Retargeter, poses: Poses, q_rad: np.ndarray) -> float:
 @pytest.mark.long
 def test_another_solver_finds_nothing_better():
     """Twelve frames of a punch by SciPy's SLSQP, from our solution and from the poses: it comes to the same error."""
+    from scipy.optimize import (  # slow to import, and every worker of xdist collects this file
+        LinearConstraint,
+        minimize,
+    )
+
     retargeter, poses, path = _clip("reference", "punch", 12)
     found = best_of_clip(retargeter, poses, path, contact=False)
     joints = sorted({j for arm in retargeter.arms for j in arm.joints if arm.side == "right"})

@@ -8,7 +8,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from matplotlib.image import imread
 
 from daemon.cli import main
 from retarget.robot.loading import ROBOTS_DIR, list_robots, load_robot
@@ -95,6 +94,8 @@ def test_check_says_what_touches(tmp_path: Path, capsys: pytest.CaptureFixture[s
 
 @pytest.mark.parametrize("name", few_and_long(["op2"], ["ffw_bg2"]))
 def test_show_draws_rest_arms_out_and_a_gesture(name: str, tmp_path: Path) -> None:
+    from matplotlib.image import imread  # slow to import, and every worker of xdist collects this file
+
     out = tmp_path / "robot.png"
     assert main(["robot", "show", name, "--out", str(out), "--text", "raise your left arm"]) == 0
     picture = imread(out)[..., :3]

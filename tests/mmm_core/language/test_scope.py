@@ -9,7 +9,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 import torch
-from scipy.stats import mannwhitneyu
 
 from mmm_core.corpus.heldout import PROBES
 from mmm_core.corpus.outside import OUTSIDE, outside_texts
@@ -81,6 +80,8 @@ class TestPrompts:
 
 class TestAuroc:
     def test_as_scipy_counts_it_with_ties(self) -> None:
+        from scipy.stats import mannwhitneyu  # slow to import, and every worker of xdist collects this file
+
         rng = np.random.default_rng(0)
         a, b = rng.integers(0, 9, 200), rng.integers(-3, 7, 150)
         wanted = mannwhitneyu(a, b).statistic / (len(a) * len(b))
