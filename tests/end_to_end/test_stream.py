@@ -18,7 +18,7 @@ from daemon.client import AsyncClient, CancelledByError, RefusedError
 from daemon.wire import events as ev
 from daemon.wire.codec import decode_event, encode
 from daemon.wire.requests import Release, Say
-from tests.support.harness import MMMD
+from tests.support.harness import MMMD, plays_well
 from tests.support.sizes import few_and_long
 from tests.support.streaming import PERIOD_S, fed, until_still, wave
 
@@ -34,9 +34,9 @@ def test_a_stream_moves_the_robot_and_is_released_with_its_figures(robot):
         now = robot.status()
         assert now.state == "moving" and now.command.id == stream.news.id
         assert now.stream.lease.holder == "sine" and now.stream.lease.state == "streaming"
-        assert 0.5 * sent < now.stream.lease.targets <= sent and now.stream.bad == {}
+        assert 1 < now.stream.lease.targets <= sent and now.stream.bad == {}  # the newest is taken of those that wait
     done = stream.news.end
-    assert isinstance(done, ev.Done) and done.gate_clipped_frames == 0 and done.peak_speed_share > 0.02
+    assert isinstance(done, ev.Done) and plays_well(done) and done.peak_speed_share > 0.02
     assert 0 < done.first_motion_ms < 1000
     assert robot.status().stream.lease is None
 

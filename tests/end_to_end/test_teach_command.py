@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 import io
 import shutil
 import signal
@@ -88,6 +89,9 @@ def gestures(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def module_daemon(tmp_path_factory: pytest.TempPathFactory, gestures: Path) -> Iterator[SharedDaemon]:
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("MMMD_GESTURES", str(gestures))
+        importlib.import_module(
+            "scipy.signal"
+        )  # `mmmd gesture teach` runs in the process that plays the servos, and must not hold it up
         made = SharedDaemon(tmp_path_factory.mktemp("shared"))
         yield made
         made.close()

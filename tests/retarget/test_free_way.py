@@ -50,7 +50,7 @@ def searched(name: str, start: np.ndarray, goal: np.ndarray) -> RrtConnect:
     return search
 
 
-@settings(max_examples=examples(24), deadline=None)
+@settings(max_examples=examples(15), deadline=None)
 @given(names, seeds, st.booleans())
 @example("toddlerbot", 204342947, False)
 def test_on_no_way_to_park_or_rest_it_touches_itself(name, seed, parks):

@@ -11,6 +11,7 @@ import pytest
 from daemon.cli import main
 from daemon.recording.mcap_log import LogWriter
 from sim.replay import Stretch, compare
+from tests.support.harness import slow_reference
 from tests.support.rig import rig, swing
 
 TICK_DEG = 360 / 4096
@@ -81,11 +82,11 @@ def test_the_command_says_it_in_words_and_as_json(run, tmp_path: Path, capsys):
         for record in records:
             writer.cycle(record)
         writer.finish()
-    assert main(["sim", "--replay", str(path), "--json"]) == 0
+    assert main(["sim", "--replay", str(path), "--robot", slow_reference(), "--json"]) == 0
     figures = json.loads(capsys.readouterr().out)
     assert (
         figures["robot"] == "reference" and len(figures["servos"]) == robot.n_joints and figures["rms_deg"] < TICK_DEG
     )
-    assert main(["sim", "--replay", str(path)]) == 0
+    assert main(["sim", "--replay", str(path), "--robot", slow_reference()]) == 0
     assert "all servos:" in capsys.readouterr().out
     assert main(["sim", "--replay", str(tmp_path / "none.mcap")]) == 2

@@ -16,7 +16,7 @@ from sim.bus import SimBus
 from sim.clock import VirtualClock
 from sim.faults import Fault, FaultSchedule
 from sim.port import SimPort
-from tests.support.robots import packaged
+from tests.support.robots import packaged, slow
 
 
 class Rig:
@@ -93,9 +93,9 @@ class Rig:
 
 
 @contextmanager
-def rig(name: str = "reference", *faults: Fault, **options) -> Iterator[Rig]:
-    """A rig whose shared memory is removed at the end."""
-    robot = load_robot(name) if "/" in name else packaged(name)
+def rig(name: str = "reference", *faults: Fault, slowed=True, **options) -> Iterator[Rig]:
+    """A rig whose shared memory is removed at the end; `reference` at half its rate where it may be slowed."""
+    robot = load_robot(name) if "/" in name else slow() if name == "reference" and slowed else packaged(name)
     link = BusLink.create(robot.n_joints, robot.n_servos)
     try:
         yield Rig(robot, link, *faults, **options)
@@ -138,7 +138,7 @@ def lead_to(r: Rig, state: str, parking_cycles: int = 1) -> None:
     r.arm()
     if state != "holding":
         r.push(swing(r.robot, 2.0))
-        r.cycle(60)
+        r.cycle(round(0.6 * r.robot.bus.rate_hz))
     if state in ("stopping", "parking"):
         r.link.request(BusRequest.STOP if state == "stopping" else BusRequest.PARK)
         r.cycle(1 if state == "stopping" else parking_cycles)

@@ -91,7 +91,7 @@ def bring_to(client: Client, state: str) -> None:
         client.wait_for("holding", timeout_s=3)
     elif state == "parking":
         client.park(wait=False)
-        client.wait_for("parking", timeout_s=3)
+        client.wait_for(*STAYS["parking"], timeout_s=10)  # on a busy machine it may be over before its state is read
 
 
 def bring_to_fault(client: Client, servos: Servos) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import replace
 from functools import cache
 from typing import TypeVar
 
@@ -16,6 +17,13 @@ T = TypeVar("T")
 def packaged(name: str) -> RobotModel:
     """The packaged robot of that name; reading its file takes as long as some cycles of its simulated bus."""
     return load_robot(name)
+
+
+@cache
+def slow(name: str = "reference") -> RobotModel:
+    """A packaged robot at half the cycles per second: a second of its simulated bus takes half the processor time."""
+    robot = packaged(name)
+    return replace(robot, bus=replace(robot.bus, rate_hz=robot.bus.rate_hz / 2))
 
 
 class ByName(Mapping[str, T]):

@@ -24,7 +24,7 @@ def test_a_silent_front_holds_then_parks(monkeypatch):
             r.cycle()
         assert r.state is BusState.HOLDING
         r.push(swing(r.robot, 2.0))
-        for _ in range(30):
+        for _ in range(15):
             r.link.heartbeat()
             r.cycle()
         lost_s, first = r.clock.now_s(), len(r.records)

@@ -112,7 +112,7 @@ def test_after_a_plan_into_the_body_the_next_motion_is_played(name):
     """It stands nearer to itself than paths keep, and is led away all the same; the plan before does not wait for ever."""
     with rig(name) as r:
         r.arm()
-        r.push(np.repeat(into_itself(name)[None], 100, 0))
+        r.push(np.repeat(into_itself(name)[None], round(r.robot.bus.rate_hz), 0))
         r.cycle(5)
         assert r.state is BusState.PLAYING
         r.until(BusState.HOLDING, within_s=1.0 + 2 * WAIT_S)

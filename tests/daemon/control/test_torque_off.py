@@ -138,9 +138,9 @@ def test_a_stop_that_follows_torque_off_before_it_stands_holds():
     with rig() as r:
         r.arm()
         r.push(swing(r.robot, 2.0))
-        r.cycle(60)
+        r.cycle(30)
         r.link.request(BusRequest.TORQUE_OFF)
-        r.cycle(2)
+        r.cycle()
         r.link.request(BusRequest.STOP)
         r.cycle(100)
         assert r.state is BusState.HOLDING and all(r.torque)

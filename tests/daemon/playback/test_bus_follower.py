@@ -40,7 +40,7 @@ class Front:
 @pytest.mark.parametrize("state", ["limp", "arming", "holding", "playing", "stopping", "parking"])
 def test_a_bus_process_back_from_silence_latches_the_fault_told(state):
     """It took up what it was doing, which cannot follow a fault, and ended in an e-stop that nobody had given."""
-    with rig("reference") as r:
+    with rig("reference", slowed=False) as r:
         front = Front(r)
         front.tick()
         if state == "arming":

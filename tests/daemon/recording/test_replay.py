@@ -16,7 +16,9 @@ from sim.bus import SimBus
 from sim.clock import VirtualClock
 from sim.faults import Fault, FaultSchedule
 from sim.port import SimPort
+from tests.support.harness import slow_reference
 from tests.support.rig import rig, swing
+from tests.support.robots import slow
 
 
 def write(path: Path, robot, records, drop=()) -> Path:
@@ -37,20 +39,20 @@ def session():
         r.cycle(3)
         r.arm()
         r.push(swing(r.robot, 1.0))
-        r.cycle(60)
-        r.push(random.uniform(-3, 3, (80, r.robot.n_joints)), plan_id=2)
-        r.cycle(130)
-        r.link.request(BusRequest.STOP)
         r.cycle(30)
+        r.push(random.uniform(-3, 3, (40, r.robot.n_joints)), plan_id=2)
+        r.cycle(65)
+        r.link.request(BusRequest.STOP)
+        r.cycle(15)
         r.push(swing(r.robot, 1.0), plan_id=3)
-        r.cycle(40)
+        r.cycle(20)
         r.link.request(BusRequest.ESTOP)
         r.cycle(5)
         r.link.request(BusRequest.RESET)
         r.cycle(2)
         r.arm()
         r.push(swing(r.robot, 0.8), plan_id=4)
-        r.cycle(85)
+        r.cycle(43)
         r.link.request(BusRequest.PARK)
         r.cycle()
         r.until(BusState.LIMP)
@@ -66,7 +68,7 @@ def log_file(session, tmp_path) -> Path:
 
 def play(log: Log, *faults: Fault, robot=None):
     """Replay in virtual time; the result, the simulator, and all goals that its servos received."""
-    robot = robot or load_robot("reference")
+    robot = robot or slow()
     clock = VirtualClock()
     sim = SimBus(robot, FaultSchedule(tuple(faults)))
     received: list[tuple[int, int]] = []
@@ -87,7 +89,7 @@ def test_the_servos_receive_the_same_goals_bit_for_bit(session, log_file):
     assert result.stretches == 2
     assert sim.audit.report()["violations"] == 0
     assert not any(s.torque for s in sim.servos.values())
-    for row, servo_id in enumerate(load_robot("reference").servo_ids):
+    for row, servo_id in enumerate(slow().servo_ids):
         got = [tick for found, tick in received if found == servo_id]
         for stretch in stretches(log):
             wanted = [c.goal_tick[row] for c in stretch]
@@ -109,14 +111,14 @@ def test_a_changed_goal_is_found_and_named(log_file):
     object.__setattr__(changed, "goal_tick", tuple(ticks))
     result, _, _ = play(log)
     assert not result.identical and result.goals - result.same == 1
-    servo = load_robot("reference").servo_ids[4]
+    servo = slow().servo_ids[4]
     assert f"cycle {changed.cycle}, servo {servo} " in result.first_difference
 
 
 def test_a_log_that_breaks_limits_is_held_back_by_the_gate(log_file):
     """Goals that no gate let through (a forged log, another robot file) reach no servo."""
     log = read_log(log_file)
-    for cycle in [c for c in log.cycles if c.torque][100:110]:
+    for cycle in [c for c in log.cycles if c.torque][50:60]:
         cycle.goal_rad[:] += 1.5
     result, sim, _ = play(log)
     assert not result.identical and result.first_difference
@@ -157,11 +159,11 @@ def test_the_log_of_another_robot_is_refused(log_file):
 
 
 def test_interrupted_it_leaves_no_torque(log_file):
-    robot, clock = load_robot("reference"), VirtualClock()
+    robot, clock = slow(), VirtualClock()
     sim, link = SimBus(robot), BusLink.create(robot.n_joints)
 
     def interrupt(done: int) -> None:
-        if done == 150:
+        if done == 75:
             assert any(s.torque for s in sim.servos.values())
             raise KeyboardInterrupt
 
@@ -182,7 +184,7 @@ def test_a_fault_on_the_way_ends_the_replay(log_file, kind):
 
 
 def test_the_command_gives_its_figures_as_json(log_file, capsys):
-    assert main(["replay", str(log_file), "--json"]) == 0
+    assert main(["replay", str(log_file), "--robot", slow_reference(), "--json"]) == 0
     figures = json.loads(capsys.readouterr().out)
     assert figures["identical"] and figures["goals"] == figures["same"] > 0
     assert figures["audit"]["violations"] == 0
@@ -198,11 +200,11 @@ def test_the_command_plays_a_cut_off_log_warns_and_says_how_it_went(session, tmp
     path = tmp_path / "run.mcap"
     with path.open("wb") as f:
         writer = LogWriter(f, robot)
-        for record in records[:200]:
+        for record in records[:100]:
             writer.cycle(record)
         writer.flush()
-    assert main(["replay", str(path), "--json"]) == 0
+    assert main(["replay", str(path), "--robot", slow_reference(), "--json"]) == 0
     out, err = capsys.readouterr()
     assert "cut off" in err and json.loads(out)["log_is_cut"]
-    assert main(["replay", str(path)]) == 0
+    assert main(["replay", str(path), "--robot", slow_reference()]) == 0
     assert "same goals" in capsys.readouterr().out

@@ -15,13 +15,13 @@ from daemon.control.control_loop import ControlLoop
 from daemon.control.starting import start
 from daemon.dynamixel.servo_bus import ServoBus
 from daemon.shared_memory.bus_link import BusLink, BusRequest, BusState
-from retarget.robot.loading import load_robot
 from retarget.robot.robot import RobotModel
 from sim.bus import SimBus
 from sim.clock import VirtualClock
 from sim.faults import Fault, FaultSchedule
 from sim.port import SimPort
 from tests.support.rig import swing
+from tests.support.robots import slow
 from tests.support.sizes import few_and_long
 
 STATES = ("limp", "arming", "holding", "playing", "stopping", "parking", "fault")
@@ -100,7 +100,7 @@ class Robot:
             self.cycle()
         if state != "holding":
             self.front.setpoints.push(swing(self.robot, 2.0), 1, 0, self.front.epoch, last=True)
-            self.cycle(60)
+            self.cycle(round(0.6 * self.robot.bus.rate_hz))
         kinds = {"stopping": BusRequest.STOP, "parking": BusRequest.PARK, "fault": BusRequest.FAULT}
         if state in kinds:
             self.front.request(kinds[state])
@@ -110,7 +110,7 @@ class Robot:
 
 @contextmanager
 def robot(*faults: Fault) -> Iterator[Robot]:
-    model = load_robot("reference")
+    model = slow()
     link = BusLink.create(model.n_joints, model.n_servos)
     try:
         yield Robot(model, link, *faults)
