@@ -93,9 +93,9 @@ class TestAuroc:
             auroc([1.0], [])
 
 
-@pytest.mark.parametrize("every", [2, pytest.param(1, id="all", marks=pytest.mark.soak)])
+@pytest.mark.parametrize("every", [3, pytest.param(1, id="all", marks=pytest.mark.soak)])
 def test_the_score_parts_the_development_prompts(engine: Engine, every: int) -> None:
-    """Every second prompt of each kind; all in the soak run, and in `mmmd eval scope`."""
+    """Every third prompt of each kind; all in the soak run, and in `mmmd eval scope`."""
     inside = [*SCOPE_DEVELOPMENT.in_scope, *(p.text for p in PROBES)][::every]
     outside = {kind: texts[::every] for kind, texts in SCOPE_DEVELOPMENT.out_of_scope.items()}
     found = scope_figures(engine, inside, outside)
@@ -107,7 +107,7 @@ def test_the_score_parts_the_development_prompts(engine: Engine, every: int) -> 
 
 def test_another_side_of_the_same_texts_is_seen(engine: Engine) -> None:
     """The measure can fail: with the two lists in each other's place it does."""
-    found = scope_figures(engine, OUTSIDE[:60], {"known": sorted(known_commands(1))[:60]})
+    found = scope_figures(engine, OUTSIDE[:20], {"known": sorted(known_commands(1))[:20]})
     assert found["auroc"] < 0.05 and found["false_refusals"] > 0.9 and found["false_acceptances"] > 0.9
 
 
