@@ -17,6 +17,9 @@ from sim.faults import Fault, FaultSchedule
 from sim.pty import PtyServer
 
 _PLUG_TIMEOUT_S = 5.0
+_CALLER_PRIORITY = 20
+"""FIFO priority of the thread that has servos served: below bus processes and the threads that take stops, which need not wait then
+while it imports or computes."""
 
 
 class ListeningBus(SimBus):
@@ -83,10 +86,10 @@ class TtyServos:
         self._served.close()
 
 
-def go_first(pid: int, flags: int = 0) -> None:
+def go_first(pid: int, flags: int = 0, priority: int = BUS_PRIORITY) -> None:
     """Give FIFO priority to a process that plays servos (0: this thread), where the system allows this."""
     with contextlib.suppress(OSError):
-        os.sched_setscheduler(pid, os.SCHED_FIFO | flags, os.sched_param(BUS_PRIORITY))
+        os.sched_setscheduler(pid, os.SCHED_FIFO | flags, os.sched_param(priority))
 
 
 def go_last(pid: int) -> None:
@@ -126,8 +129,8 @@ def _unbound_workers() -> list[int]:
 def served(server: PtyServer) -> Generator[PtyServer]:
     """Serve simulated servos behind a tty in a thread, with FIFO priority where allowed: late answers would count as silence.
 
-    The calling thread gets FIFO priority as well, because it sometimes holds the interpreter's lock; processes started meanwhile do
-    not get it.
+    The calling thread gets FIFO priority as well, a lower one, because it sometimes holds the interpreter's lock; processes started
+    meanwhile do not get it.
     """
 
     def serve() -> None:
@@ -135,7 +138,7 @@ def served(server: PtyServer) -> Generator[PtyServer]:
         server.serve()
 
     thread = threading.Thread(target=serve, daemon=True)
-    go_first(0, os.SCHED_RESET_ON_FORK)
+    go_first(0, os.SCHED_RESET_ON_FORK, _CALLER_PRIORITY)
     try:
         thread.start()
         yield server
