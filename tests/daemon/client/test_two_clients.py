@@ -232,6 +232,7 @@ def test_a_second_ctrl_c_says_what_goes_on(running):
             errors = process.communicate(timeout=20)[1]
         finally:
             os.kill(running.process.pid, signal.SIGCONT)
+            process.kill()  # after a failure it would wait for a daemon that is gone
         assert process.returncode == 130 and "mmmd stop" in errors and "may go on" in errors
 
 
