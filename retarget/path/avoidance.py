@@ -125,7 +125,7 @@ class Avoidance:
             free[rows] = lack <= aim_m
             some = lack > 0
             least = LeastDistances(q[rows[some]], least_m[some], least.sweep_m)
-            rows, lack, way = rows[some], lack[some, None], way[some]
+            rows, lack = rows[some], lack[some, None]
             if not len(rows):
                 break
             way = way * self._mobility

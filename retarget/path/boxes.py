@@ -11,8 +11,10 @@ _STEEP = 1e9
 """Metres that exceed every slope."""
 
 
-def capsule_to_box(offset: Array, axis: Array, half_m: Array, box_half_m: Array) -> tuple[Array, Array]:
-    """Distances (n,) from boxes to capsules' axes, and vectors (n, 3) from box to axis; both 0 where an axis crosses its box.
+def capsule_to_box(offset: Array, axis: Array, half_m: Array, box_half_m: Array) -> tuple[Array, Array, Array]:
+    """Distances (n,) from boxes to capsules' axes, vectors (n, 3) from box to axis, and places (n,) of the nearest points.
+
+    Distance and vector are 0 where an axis crosses its box. The places are metres along the axes from the capsules' centres.
 
     Half the squared distance of a point on the axis is convex, and its slope is linear between the planes of the box's faces: the
     nearest point is the zero of the slope between the last plane with a negative and the first with a positive slope.
@@ -36,7 +38,7 @@ def capsule_to_box(offset: Array, axis: Array, half_m: Array, box_half_m: Array)
     # A slope that only rises or only falls makes `low` and `high` the nearest end; between them a slope of 0 is nearest throughout.
     nearest = low - fall / np.where(rise > fall, rise - fall, 1.0) * (high - low)
     beyond = _beyond(o + a * nearest, h)
-    return np.sqrt((beyond * beyond).sum(0)), beyond.T
+    return np.sqrt((beyond * beyond).sum(0)), beyond.T, nearest
 
 
 def _beyond(point: Array, half_m: Array) -> Array:

@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from retarget.path.continuous_bounds import Known, Spans
+from retarget.path.continuous_bounds import Sections, Spans
 from retarget.path.distances import MARGIN_M, Array, Indices, Placed
 from retarget.path.least_distances import LeastDistances
 from retarget.path.slopes import PairSlopes
@@ -47,9 +47,9 @@ class SelfContact(PairSlopes):
         """Lower bounds of all distances in poses (T, J), exact below the margin; fast if consecutive poses are near each other."""
         placed = self._placed(q_rad, with_joints=False)
         least_m = self._bounds(q_rad, placed)
-        of = np.flatnonzero((least_m < self._margin_m).any(0))
-        if len(of):
-            least_m[:, of] = self._distances(q_rad, placed, of, least_m[:, of]).distance_m
+        near = least_m < self._margin_m
+        if near.any():
+            self._nearer(placed, least_m, near, self._margin_m)
         return LeastDistances(q_rad, least_m, self._sweep_m)
 
     def touching(self, least: LeastDistances) -> NDArray[np.bool_]:
@@ -122,44 +122,60 @@ class SelfContact(PairSlopes):
         # The speed is linear in time, so a segment moves by no more than the mean of the speeds at its ends.
         step = step_rad @ self._sweep_m.T  # (N - 1, P)
         moves = (step[:-1] + step[1:]) / 2
-        every = np.asarray(least_m[:-1] + least_m[1:] - moves < 2 * kept_m, bool).any(0) | (least_m < margin_m).any(0)
-        of = np.flatnonzero(every)
-        known = self._known_of(q_rad, placed, of, least_m[:, of])
-        border = least_m[:, of] = known.distance
-        found = LeastDistances(q_rad[1:], least_m[1:], self._sweep_m)
-        touching = np.asarray((border < margin_m[of]).any(1), bool)
+        unsure = least_m < margin_m
+        near = least_m[:-1] + least_m[1:] - moves < 2 * kept_m
+        unsure[:-1] |= near
+        unsure[1:] |= near
+        enough_m = np.broadcast_to(
+            margin_m, least_m.shape
+        ).copy()  # a pair this far at both ends of a segment is clear on it
+        np.maximum(enough_m[:-1], kept_m + moves / 2, out=enough_m[:-1])
+        np.maximum(enough_m[1:], kept_m + moves / 2, out=enough_m[1:])
+        found = self._nearer(placed, least_m, unsure, enough_m)
+        least = LeastDistances(q_rad[1:], least_m[1:], self._sweep_m)
+        touching = np.asarray((least_m < margin_m).any(1), bool)
         hit = touching[:-1] | touching[1:]
-        near = np.asarray(border[:-1] + border[1:] - moves[:, of] < 2 * kept_m[of], bool) & ~hit[:, None]
-        segment, some = np.flatnonzero(near.any(1)), np.flatnonzero(near.any(0))
-        if not len(segment):
-            return hit, found
-        # From here on only pairs that may come near are computed; half a segment moves by at most half of its largest speed.
-        of, known, near = of[some], known.of(some), near[segment][:, some]
-        moved = np.maximum(step[:-1], step[1:])
-        bend_rad = np.abs(control_rad[2:] - 2 * control_rad[1:-1] + control_rad[:-2])
-        bent = self._spans.bends_m(step_rad, bend_rad, moved)[segment][:, of]
-        moved, kept_m, margin_m = moved[segment][:, of], kept_m[of], margin_m[of]
-        ends = np.stack([segment, segment + 1])
-        u = np.tile((0.0, 1.0), (len(segment), 1))
+        near = (least_m[:-1] + least_m[1:] - moves < 2 * kept_m) & ~hit[:, None]
+        segment, pair = np.nonzero(near)
+        if len(segment):
+            # Half a segment moves by at most half of its largest speed.
+            moved = np.maximum(step[:-1], step[1:])
+            bend_rad = np.abs(control_rad[2:] - 2 * control_rad[1:-1] + control_rad[:-2])
+            bent = self._spans.bends_m(step_rad, bend_rad, moved)
+            way = np.zeros((*least_m.shape, 3))
+            way[found.pose, found.pair] = found.way
+            ends = np.stack([segment, segment + 1])
+            sections = Sections(
+                segment, pair, np.repeat([[0.0], [1.0]], len(pair), 1), ends, least_m[ends, pair], way[ends, pair],
+                moved[segment, pair], bent[segment, pair],
+            )  # fmt: skip
+            self._halve(sections, placed, control_rad, margin_m, kept_m, hit)
+        return hit, least
+
+    def _halve(
+        self, sections: Sections, placed: Placed, control_rad: Array, margin_m: Array, kept_m: Array,
+        hit: NDArray[np.bool_],
+    ) -> None:  # fmt: skip
+        """Halve sections until each is known to be clear; write true into `hit` (N - 2,) for segments in which one is not."""
+        centre, turn = placed.centre, placed.turn
         for _ in range(_DEEPEST):
-            near = self._still_near(near, known, ends, of, bent, kept_m)
-            unsure = near.any(1) & ~hit[segment]
-            if not unsure.any():
-                return hit, found
-            segment, u, ends, near = segment[unsure], u[unsure], ends[:, unsure], near[unsure]
-            moved, bent = moved[unsure], bent[unsure]
-            middle = u.mean(1)
-            between = self._known(_spline(control_rad, segment, middle), of)
-            hit[segment[(between.distance < margin_m).any(1)]] = True
-            at = len(known.distance) + np.arange(len(segment))
-            known = known.and_also(between)
-            ends = np.concatenate([np.stack([ends[0], at]), np.stack([at, ends[1]])], 1)
-            u = np.concatenate([np.stack([u[:, 0], middle], 1), np.stack([middle, u[:, 1]], 1)])
-            segment, near = np.concatenate([segment, segment]), np.concatenate([near, near])
-            moved, bent = np.concatenate([moved, moved]) / 2, np.concatenate([bent, bent]) / 4
-            near &= known.distance[ends[0]] + known.distance[ends[1]] - moved < 2 * kept_m
-        hit[segment[near.any(1)]] = True
-        return hit, found
+            near = ~hit[sections.segment]
+            bounded = near & self._bounded[sections.pair]
+            at = np.flatnonzero(bounded)
+            near[at] = self._spans.least_m(sections.of(bounded), centre, turn) < kept_m[sections.pair[at]]
+            if not near.any():
+                return
+            sections = sections.of(near)
+            # No two sections but those of different pairs begin in the same pose.
+            _, one, pose = np.unique(sections.ends[0], return_index=True, return_inverse=True)
+            q_rad = _spline(control_rad, sections.segment[one], sections.u[:, one].mean(0))
+            between = self._placed(q_rad, with_joints=False)
+            middle = self._measure(between, pose, sections.pair)
+            hit[sections.segment[middle.distance_m < margin_m[sections.pair]]] = True
+            sections = sections.halves(len(centre) + pose, middle.distance_m, middle.way)
+            centre, turn = np.concatenate([centre, between.centre]), np.concatenate([turn, between.turn])
+            sections = sections.of(sections.distance_m.sum(0) - sections.moved_m < 2 * kept_m[sections.pair])
+        hit[sections.segment] = True
 
     def clear_along(self, way_rad: Array, share: float = KEPT, first_slack_m: Array | None = None) -> bool:
         """Whether straight lines from pose to pose of (N, J) keep a share of every margin at every instant.
@@ -185,36 +201,20 @@ class SelfContact(PairSlopes):
             u, first, last = u[segment], first[segment][:, pairs], last[segment][:, pairs]
             middle = u.mean(1)
             q = _on_lines(way_rad, middle)
-            between = self._distances(q, self._placed(q, with_joints=False), of).distance_m - kept_m[of]
+            between = self._of_all(self._placed(q, with_joints=False), of).distance_m.reshape(len(q), -1) - kept_m[of]
             if (between <= 0).any():
                 return False
             u = np.concatenate([np.stack([u[:, 0], middle], 1), np.stack([middle, u[:, 1]], 1)])
             first, last = np.concatenate([first, between]), np.concatenate([between, last])
         return False
 
-    def _known(self, q_rad: Array, of: Indices) -> Known:
-        return self._known_of(q_rad, self._placed(q_rad, with_joints=False), of, None)
-
-    def _known_of(self, q_rad: Array, placed: Placed, of: Indices, least_m: Array | None) -> Known:
-        found = self._distances(q_rad, placed, of, least_m)
-        return Known(placed.centre, placed.turn, found.distance_m, self._apart(placed, of, found))
-
     def _bounds(self, q_rad: Array, placed: Placed) -> Array:
         """(T, P) lower bounds of distances in poses (T, J), each near the next: every `_EACH`-th pose is measured."""
         frames = np.arange(len(q_rad))
         some = frames[min(_EACH // 2, len(frames) - 1) :: _EACH]
         nearest = np.minimum(frames // _EACH, len(some) - 1)
-        measured = self._distances(q_rad[some], placed.of(some), self._every).distance_m
+        measured = self._of_all(placed.of(some), self._every).distance_m.reshape(len(some), -1)
         return measured[nearest] - np.abs(q_rad - q_rad[some[nearest]]) @ self._sweep_m.T
-
-    def _still_near(
-        self, near: NDArray[np.bool_], known: Known, ends: Indices, of: Indices, bent: Array, kept_m: Array
-    ) -> NDArray[np.bool_]:
-        """(n, m) whether each of m pairs is still `near` in n spans after the second-order bound on their movement."""
-        span, at = np.nonzero(near & self._bounded[of])
-        least = self._spans.least_m(known, ends[:, span], at, of[at]) - bent[span, at]
-        near[span, at] = least < kept_m[at]
-        return near
 
     def _extents_m(self) -> tuple[Array, Array]:
         """(geoms, 3) half edges of boxes and half lengths of capsules, and (geoms,) radii, 0 for boxes."""

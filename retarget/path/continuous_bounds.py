@@ -11,39 +11,62 @@ A bound from first derivatives alone falls off with h; the second-order bound th
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
+Number = TypeVar("Number", np.float64, np.int64)
 _LEAST_M = 1e-9
 
 
 @dataclass(frozen=True)
-class Known:
-    """Positions of all shapes and distances of n pairs of them, in R poses.
+class Sections:
+    """K sections of a spline's segments, each with one pair of shapes that may come near on it.
 
     Attributes:
-        centre: (R, geoms, 3) centres of all shapes.
-        turn: (R, geoms, 9) their rotations.
-        distance: (R, n) of each pair.
-        apart: (R, n, 3) approximate vectors between the nearest points of each pair, first to second, of any length.
+        segment: (K,) index of the segment.
+        pair: (K,) index of the pair.
+        u: (2, K) start and end of the section, 0 to 1 on the segment.
+        ends: (2, K) indices of the poses at both.
+        distance_m: (2, K) distance of the pair, or a lower bound, at both.
+        way: (2, K, 3) approximate vectors between the nearest points at both, first shape to second, of any length.
+        moved_m: (K,) largest movement of the pair on half the section, times 2.
+        bent_m: (K,) A h^2 / 8.
     """
 
-    centre: Array
-    turn: Array
-    distance: Array
-    apart: Array
+    segment: Indices
+    pair: Indices
+    u: Array
+    ends: Indices
+    distance_m: Array
+    way: Array
+    moved_m: Array
+    bent_m: Array
 
-    def of(self, pairs: Indices) -> Known:
-        """The distances of some of the pairs."""
-        return Known(self.centre, self.turn, self.distance[:, pairs], self.apart[:, pairs])
+    def of(self, some: NDArray[np.bool_]) -> Sections:
+        """Some of the sections, selected by a mask (K,)."""
+        at = np.flatnonzero(some)
+        return Sections(
+            self.segment[at], self.pair[at], self.u[:, at], self.ends[:, at], self.distance_m[:, at], self.way[:, at],
+            self.moved_m[at], self.bent_m[at],
+        )  # fmt: skip
 
-    def and_also(self, more: Known) -> Known:
-        """The distances of these poses, then those of the poses in `more`."""
-        return Known(*(np.concatenate([getattr(self, f.name), getattr(more, f.name)]) for f in fields(self)))
+    def halves(self, pose: Indices, distance_m: Array, way: Array) -> Sections:
+        """(2 K) first and second halves, given index of the pose, distance (K,) and vector (K, 3) in the middle of each."""
+        two = np.tile(np.arange(len(pose), dtype=np.int64), 2)
+        return Sections(
+            self.segment[two], self.pair[two], _split(self.u, self.u.mean(0)), _split(self.ends, pose),
+            _split(self.distance_m, distance_m), _split(self.way, way), self.moved_m[two] / 2, self.bent_m[two] / 4,
+        )  # fmt: skip
+
+
+def _split(ends: NDArray[Number], middle: NDArray[Number]) -> NDArray[Number]:
+    """(2, 2 K, ...) values at both ends of the halves of K sections, given values at the ends and in the middle."""
+    return np.concatenate([np.stack([ends[0], middle]), np.stack([middle, ends[1]])], 1)
 
 
 class Spans:
@@ -81,28 +104,24 @@ class Spans:
         turned = step_rad @ self._parting.T
         return (np.maximum(turned[:-1], turned[1:]) * moved_m + bend_rad @ self._sweep_m.T) / 8
 
-    def least_m(self, known: Known, rows: Indices, at: Indices, pair: Indices) -> Array:
-        """(K,) lower bounds of distances between two poses, A h^2 / 8 still to be taken off.
+    def least_m(self, sections: Sections, centre: Array, turn: Array) -> Array:
+        """(K,) lower bounds of distances on sections.
 
         Args:
-            known: poses and pairs.
-            rows: (2, K) indices of the two poses in `known`.
-            at: (K,) indices of the pairs in `known`.
-            pair: (K,) indices of the pairs among all pairs.
+            sections: sections of pairs with a bound.
+            centre: (R, geoms, 3) centres of all shapes in the poses of the ends.
+            turn: (R, geoms, 9) their rotations.
         """
+        pair, rows = sections.pair, sections.ends
         a, b = self._pairs[pair].T
-        apart = known.apart[rows, at]  # (2, K, 3)
-        apart = apart / np.maximum(np.sqrt(np.vecdot(apart, apart)), _LEAST_M)[..., None]
+        apart = sections.way / np.maximum(np.sqrt(np.vecdot(sections.way, sections.way)), _LEAST_M)[..., None]
         # The mean direction, as the body that carries both sees it, turned back for each of the poses.
-        turn = known.turn[rows, self._carrier[pair]].reshape(*rows.shape, 3, 3)
-        seen = (apart[..., None, :] @ turn)[..., 0, :].sum(0)
+        carrier = turn[rows, self._carrier[pair]].reshape(*rows.shape, 3, 3)
+        seen = (apart[..., None, :] @ carrier)[..., 0, :].sum(0)
         seen /= np.maximum(np.sqrt(np.vecdot(seen, seen)), _LEAST_M)[:, None]
-        along = (turn @ seen[..., None])[..., 0]
-        offset = known.centre[rows, b] - known.centre[rows, a]
-        ends = self._half_along(known, rows, a, along) + self._half_along(known, rows, b, along)
-        return (np.vecdot(along, offset) - ends).min(0) - self._radii_m[pair]
-
-    def _half_along(self, known: Known, rows: Indices, of: Indices, along: Array) -> Array:
-        """(2, K) extents of shapes from their centres along unit directions (2, K, 3), without the radii."""
-        turn = known.turn[rows, of].reshape(*rows.shape, 3, 3)
-        return np.vecdot(np.abs((along[..., None, :] @ turn)[..., 0, :]), self._half_m[of])
+        along = (carrier @ seen[..., None])[..., 0]
+        apart_m = np.vecdot(along, centre[rows, b] - centre[rows, a])
+        for shape in (a, b):
+            turned = turn[rows, shape].reshape(*rows.shape, 3, 3)
+            apart_m -= np.vecdot(np.abs((along[..., None, :] @ turned)[..., 0, :]), self._half_m[shape])
+        return apart_m.min(0) - self._radii_m[pair] - sections.bent_m

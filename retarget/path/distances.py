@@ -48,19 +48,21 @@ class Placed:
 
 @dataclass(frozen=True)
 class Measured:
-    """Distances of n pairs in T poses, and their nearest points.
+    """Distances of K pairs of shapes, each in one pose, and the lines through their nearest points.
 
     Attributes:
-        distance_m: (T, n) distances.
-        along: two arrays (T, n), metres from the centre of each capsule of a pair, or of the capsule round a shape, along its axis.
-        points_m: both nearest points in (6,), by pose and column, of the pairs that MuJoCo measured.
-        others: poses and columns (R,), and approximate vectors between the shapes (R, 3), of the pairs with boxes.
+        pose: (K,) index of the pose.
+        pair: (K,) index of the pair.
+        distance_m: (K,) distance.
+        point: (K, 3) point on the line through the nearest points of the pair, or of the capsules round its shapes.
+        way: (K, 3) vector along this line from the first shape to the second, of any length.
     """
 
+    pose: Indices
+    pair: Indices
     distance_m: Array
-    along: tuple[Array, Array]
-    points_m: dict[tuple[int, int], Array]
-    others: list[tuple[Indices, Indices, Array]]
+    point: Array
+    way: Array
 
 
 class PairDistances:
@@ -78,92 +80,122 @@ class PairDistances:
         resting = self.distances_m(robot.rest_rad[None])[0]
         self._take(self._pairs[resting > 0])
         # A pair that rests within the margin may stay there.
-        self._margin_m = np.minimum(margin_m, resting[resting > 0] / 2)
-        self._margin_m[resting[resting > 0] > margin_m] = margin_m
+        resting = resting[resting > 0]
+        self._keep(np.where(resting > margin_m, margin_m, np.minimum(margin_m, resting / 2)))
 
     def distances_m(self, q_rad: Array) -> Array:
         """(T, P) distance of each pair in each pose (T, J): exact where it is small, elsewhere a lower bound."""
-        return self._distances(q_rad, self._placed(q_rad, with_joints=False), self._every).distance_m
+        return self._of_all(self._placed(q_rad, with_joints=False), self._every).distance_m.reshape(len(q_rad), -1)
 
-    def _distances(self, q_rad: Array, placed: Placed, of: Indices, least_m: Array | None = None) -> Measured:
-        """Distances (T, n) of n pairs; `least_m` (T, n) has known lower bounds."""
-        # All inner products of centres and axes by one multiplication, then those of each pair.
-        vectors = np.concatenate([placed.centre, placed.axis], 1)
-        products: Array = (vectors @ vectors.transpose(0, 2, 1)).reshape(len(q_rad), vectors.shape[1] ** 2)
-        of_pair: Array = products.take(self._products if of is self._every else self._products[:, of], 1)
-        aa, bb, ab, cosine, axis_a, axis_ab, axis_ba, axis_b = of_pair.transpose(1, 0, 2)
-        half1, half2 = self._half_lengths_m[:, of]
-        squared, s, t = nearest_along(aa + bb - 2 * ab, cosine, axis_a - axis_ab, axis_ba - axis_b, half1, half2)
-        distance = np.sqrt(squared) - self._radii_m[of]
-        if least_m is not None:
-            np.maximum(distance, least_m, out=distance)
-        found = Measured(distance, (s, t), {}, [])
-        if not self._all_exact:
-            self._measure(q_rad, placed, of, found)
+    def _of_all(self, placed: Placed, of: Indices) -> Measured:
+        """Distances of pairs `of` (n,) in all T poses, pose by pose."""
+        T = len(placed.centre)
+        return self._measure(placed, np.repeat(np.arange(T, dtype=np.int64), len(of)), np.tile(of, T))
+
+    def _nearer(self, placed: Placed, least_m: Array, near: NDArray[np.bool_], enough_m: Array) -> Measured:
+        """Distances of those of the pairs `near` (T, P) whose bounding spheres are nearer than `enough_m`, a shape like (T, P).
+
+        `least_m` (T, P) has known lower bounds of distances; the new distances and bounds are written into it.
+        """
+        at = np.flatnonzero(near)
+        pose, pair = np.divmod(at, near.shape[1])
+        centre, known = placed.centre.reshape(-1, 3), least_m.reshape(-1)
+        a, b = (pose * placed.centre.shape[1] + of.take(pair) for of in self._shape)
+        first: Array = centre.take(a, 0)
+        between = centre.take(b, 0) - first
+        spheres = np.sqrt(np.vecdot(between, between)) - self._reach_m.take(pair)
+        known[at] = np.maximum(known.take(at), spheres)
+        some = np.flatnonzero(spheres < np.broadcast_to(enough_m, near.shape)[pose, pair])
+        found = self._measure(placed, pose.take(some), pair.take(some), known.take(at.take(some)))
+        known[at.take(some)] = found.distance_m
         return found
 
-    def _measure(self, q_rad: Array, placed: Placed, of: Indices, found: Measured) -> None:
-        """Make distances of pairs that are no capsules exact where they are small."""
-        distance = found.distance_m
-        small_m = self._margin_m[of] + MEASURED_M
-        t, p = np.nonzero((distance < small_m) & ~self._exact[of])
-        if not len(t):
-            return
-        pair = of[p]
-        both = self._both_boxes[pair]
-        if both.any():
-            self._bound_boxes(placed, t[both], p[both], pair[both], found)
-        deep = np.ones(len(t), bool)
-        beside = self._box[pair] >= 0
-        if beside.any():
-            deep[beside] = self._beside_boxes(placed, t[beside], p[beside], pair[beside], found)
-        left = deep & (distance[t, p] < small_m[p])
-        at = -1
-        for i, k, g in zip(t[left].tolist(), p[left].tolist(), pair[left].tolist(), strict=True):
-            if i != at:
-                self._place(q_rad[i])
-                at = i
-            distance[i, k], found.points_m[i, k] = self._measured(g)
+    def _measure(self, placed: Placed, pose: Indices, pair: Indices, least_m: Array | None = None) -> Measured:
+        """Distances of K pairs, each in one pose; `least_m` (K,) has known lower bounds."""
+        a, b = self._rows(placed, pose, pair)
+        centre, axis = placed.centre.reshape(-1, 3), placed.axis.reshape(-1, 3)
+        first, axis1, axis2 = centre.take(a, 0), axis.take(a, 0), axis.take(b, 0)
+        between = centre.take(b, 0) - first
+        half1, half2 = self._half_lengths_m.take(pair, 1)
+        squared, s, t = nearest_along(
+            np.vecdot(between, between), np.vecdot(axis1, axis2),
+            -np.vecdot(axis1, between), -np.vecdot(axis2, between), half1, half2,
+        )  # fmt: skip
+        distance = np.sqrt(squared) - self._radii_m.take(pair)
+        if least_m is not None:
+            np.maximum(distance, least_m, out=distance)
+        along = s[:, None] * axis1
+        found = Measured(pose, pair, distance, first + along, between + t[:, None] * axis2 - along)
+        if not self._all_exact:
+            self._measure_others(placed, found)
+        return found
 
-    def _bound_boxes(self, placed: Placed, t: Indices, p: Indices, pair: Indices, found: Measured) -> None:
-        """Write nearer bounds of the distances of boxes to boxes, `pair` (n,) in poses `t`, into `found` at (t, p)."""
-        a, b = self._pairs[pair].T
+    def _rows(self, placed: Placed, pose: Indices, pair: Indices) -> tuple[Indices, Indices]:
+        """(K,) rows of the first and of the second shapes of pairs in poses, with all poses one below the other."""
+        first: Indices = self._shape[0].take(pair) + placed.centre.shape[1] * pose
+        return first, first + self._second_after.take(pair)
+
+    def _measure_others(self, placed: Placed, found: Measured) -> None:
+        """Make distances of pairs that are no capsules exact where they are small."""
+        distance, small_m = found.distance_m, self._small_m.take(found.pair)
+        left = np.flatnonzero((distance < small_m) & ~self._exact.take(found.pair))
+        if not len(left):
+            return
+        pair = found.pair.take(left)
+        both, beside = self._both_boxes.take(pair), self._box.take(pair) >= 0
+        deep = np.ones(len(left), bool)
+        if both.any():
+            self._bound_boxes(placed, left[both], found)
+        if beside.any():
+            deep[beside] = self._beside_boxes(placed, left[beside], found)
+        left = left[deep & (distance.take(left) < small_m.take(left))]
+        if len(left):
+            self._measure_by_mujoco(placed, left, found)
+
+    def _bound_boxes(self, placed: Placed, at: Indices, found: Measured) -> None:
+        """Write nearer bounds of the distances of boxes to boxes into the elements `at` (n,) of `found`."""
+        t, (a, b) = found.pose[at], self._shape[:, found.pair[at]]
         turn_a, turn_b = (placed.turn[t, g].reshape(-1, 3, 3) for g in (a, b))
         offset = placed.centre[t, b] - placed.centre[t, a]
         apart, way = box_to_box(offset, turn_a, self._box_half_m[a], turn_b, self._box_half_m[b])
-        found.distance_m[t, p] = np.where(apart > 0, np.maximum(found.distance_m[t, p], apart), found.distance_m[t, p])
-        found.others.append((t, p, way))
+        some = at[apart > 0]
+        found.distance_m[some] = np.maximum(found.distance_m[some], apart[apart > 0])
+        found.way[some] = way[apart > 0]
 
-    def _beside_boxes(
-        self, placed: Placed, t: Indices, p: Indices, pair: Indices, found: Measured
-    ) -> NDArray[np.bool_]:
+    def _beside_boxes(self, placed: Placed, at: Indices, found: Measured) -> NDArray[np.bool_]:
         """Write distances of capsules to boxes, as `_bound_boxes`; returns (n,) whether MuJoCo must still measure the pair.
 
         MuJoCo measures pairs in which an axis crosses the box, and cylinders, which are smaller than their capsules.
         """
+        t, pair = found.pose[at], found.pair[at]
         box, other = self._box[pair], self._round[pair]
         turn = placed.turn[t, box].reshape(-1, 3, 3)  # columns are the box's axes
-        offset = (placed.centre[t, other] - placed.centre[t, box])[:, None] @ turn
-        axis = placed.axis[t, other][:, None] @ turn
-        apart, way = capsule_to_box(offset[:, 0], axis[:, 0], self._half_m[other], self._box_half_m[box])
-        found.distance_m[t, p] = np.maximum(found.distance_m[t, p], apart - self._radius_m[other])
-        way = np.where((box == self._pairs[pair, 0])[:, None], way, -way)  # from the first of the pair to the second
-        found.others.append((t, p, (turn @ way[..., None])[..., 0]))
-        return ~self._exact_geom[other] | (apart <= 0)
+        centre, axis = placed.centre[t, other], placed.axis[t, other]
+        offset = ((centre - placed.centre[t, box])[:, None] @ turn)[:, 0]
+        apart, way, nearest = capsule_to_box(
+            offset, (axis[:, None] @ turn)[:, 0], self._half_m[other], self._box_half_m[box]
+        )
+        found.distance_m[at] = np.maximum(found.distance_m[at], apart - self._radius_m[other])
+        some = apart > 0
+        way = np.where((box == self._shape[0, pair])[:, None], way, -way)  # from the first of the pair to the second
+        found.way[at[some]] = (turn[some] @ way[some, :, None])[..., 0]
+        found.point[at[some]] = centre[some] + nearest[some, None] * axis[some]
+        return ~self._exact_geom[other] | ~some
 
-    def _apart(self, placed: Placed, of: Indices, found: Measured) -> Array:
-        """(T, n, 3) approximate vectors between the nearest points of each of n pairs, from the first shape to the second."""
-        (a, b), (s, t) = self._pairs[of].T, found.along
-        apart = placed.centre[:, b] - placed.centre[:, a]
-        apart += t[..., None] * placed.axis[:, b] - s[..., None] * placed.axis[:, a]
-        for pose, column, way in found.others:
-            some = (way != 0).any(1)
-            apart[pose[some], column[some]] = way[some]
-        for at, points in found.points_m.items():
-            way = points[3:] - points[:3]
-            if way.any():
-                apart[at] = way
-        return apart
+    def _measure_by_mujoco(self, placed: Placed, at: Indices, found: Measured) -> None:
+        """Write MuJoCo's distances, as `_bound_boxes`."""
+        model, data, measure = self._model, self._data, mujoco.mj_geomDistance
+        points, metres, before = np.zeros((len(at), 6)), list[float](), -1
+        for row, pose, pair in zip(points, found.pose[at].tolist(), found.pair[at].tolist(), strict=True):
+            if pose != before:  # a distance depends on nothing but the places of the shapes
+                data.geom_xpos[:], data.geom_xmat[:] = placed.centre[pose], placed.turn[pose]
+                before = pose
+            metres.append(measure(model, data, *self._pair_list[pair], _FARTHEST_M, row))
+        found.distance_m[at] = metres
+        way = points[:, 3:] - points[:, :3]
+        some = way.any(1)
+        found.way[at[some]] = np.where(found.distance_m[at[some], None] < 0, -way[some], way[some])
+        found.point[at[some]] = points[some, :3]
 
     def _placed(self, q_rad: Array, *, with_joints: bool) -> Placed:
         """Capsules, and joints where asked for, in poses (T, J)."""
@@ -182,15 +214,6 @@ class PairDistances:
                 axis[i], anchor[i] = xaxis, xanchor
         ids = self._joint_ids
         return Placed(place, turn[:, self._axis_rows, self._axis_columns], turn, axis[:, ids], anchor[:, ids])
-
-    def _place(self, q_rad: Array) -> None:
-        self._data.qpos[self._address] = q_rad
-        mujoco.mj_kinematics(self._model, self._data)
-
-    def _measured(self, pair: int) -> tuple[float, Array]:
-        """MuJoCo's distance of a pair in the pose set, and the nearest points, both in (6,)."""
-        (a, b), points = self._pair_list[pair], np.zeros(6)
-        return float(mujoco.mj_geomDistance(self._model, self._data, a, b, _FARTHEST_M, points)), points
 
     def _shapes(self) -> None:
         """Compute a capsule for each shape: the shape itself, or a capsule round it."""
@@ -221,7 +244,12 @@ class PairDistances:
         self._exact = self._exact_geom[a] & self._exact_geom[b]
         self._all_exact = bool(self._exact.all())
         self._radii_m = self._radius_m[a] + self._radius_m[b]
-        self._half_lengths_m = self._half_m[pairs.T]
+        self._shape: Indices = np.ascontiguousarray(pairs.T)
+        self._second_after: Indices = self._shape[1] - self._shape[0]
+        self._half_lengths_m = self._half_m[self._shape]
+        self._reach_m = self._radii_m + self._half_lengths_m.sum(0)
+        above = self._above[self._model.geom_bodyid]
+        self._parted: Array = above[b] - above[a]
         boxes: NDArray[np.bool_] = np.asarray(self._model.geom_type == int(mujoco.mjtGeom.mjGEOM_BOX), bool)[pairs]
         self._both_boxes: NDArray[np.bool_] = boxes[:, 0] & boxes[:, 1]
         has_box = boxes[:, 0] != boxes[:, 1]
@@ -229,11 +257,11 @@ class PairDistances:
         self._box[~has_box] = -1
         self._round: Indices = np.where(boxes[:, 0], b, a)
         self._every = np.arange(len(pairs), dtype=np.int64)
-        # Where the products of centres and axes of a pair stand among all: centres come first, then axes.
-        g, n = self._model.ngeom, 2 * self._model.ngeom
-        left, right = [a, b, a, g + a, g + a, g + a, g + b, g + b], [a, b, b, g + b, a, b, a, b]
-        self._products: Indices = n * np.stack(left) + np.stack(right)
-        self._margin_m = np.zeros(len(pairs))
+        self._keep(np.zeros(len(pairs)))
+
+    def _keep(self, margin_m: Array) -> None:
+        """Keep these margins (P,) from now on."""
+        self._margin_m, self._small_m = margin_m, margin_m + MEASURED_M
 
     def _pairs_that_can_meet(self) -> Indices:
         """(P, 2) shapes that MuJoCo would check for contact, on bodies at least three steps of the tree and two joints apart."""

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from retarget.path.distances import MEASURED_M, Array, Indices, Measured, PairDistances, Placed
+from retarget.path.distances import Array, Indices, Measured, PairDistances, Placed
 from retarget.robot.kinematics import cross
 
 _LEAST_M = 1e-9
@@ -38,66 +38,52 @@ class PairSlopes(PairDistances):
 
         Returns:
             Metres that the worst pair lacks, (T,), 0 or less where every pair keeps its distance; derivatives of the pair's
-            distance by each joint, (T, J); and the bounds with the measured distances entered, (T, P).
+            distance by each joint, (n, J), in the n poses that lack something; and the bounds with the measured distances
+            entered, (T, P).
         """
-        of = np.flatnonzero((least_m < self._margin_m + aim_m).any(0))
-        if not len(of):
-            return np.zeros(len(q_rad)), np.zeros_like(q_rad), least_m
-        placed = self._placed(q_rad, with_joints=True)
-        found = self._distances(q_rad, placed, of, least_m[:, of])
-        lack = self._margin_m[of] + aim_m - found.distance_m
-        rows, worst = np.arange(len(q_rad)), lack.argmax(1)
-        least_m = least_m.copy()
-        least_m[:, of] = found.distance_m
-        return lack[rows, worst], self._slopes(q_rad, placed, found, of, rows, worst), least_m
+        wanted_m = self._margin_m + aim_m
+        near = least_m < wanted_m
+        if not near.any():
+            return np.zeros(len(q_rad)), np.zeros((0, q_rad.shape[1])), least_m
+        placed, least_m = self._placed(q_rad, with_joints=True), least_m.copy()
+        found = self._nearer(placed, least_m, near, wanted_m)
+        missing = wanted_m - least_m
+        worst = missing.argmax(1)
+        lack = missing[np.arange(len(q_rad)), worst]
+        some = np.flatnonzero(lack > 0)
+        return lack, self._slopes(placed, found, self._index_in(found, some, worst[some])), least_m
 
     def nearest(self, q_rad: Array, of: Indices) -> tuple[Array, Array]:
         """Distance beyond its margin of the nearest of some pairs, (T,), and the derivatives by each joint, (T, J)."""
         placed = self._placed(q_rad, with_joints=True)
-        found = self._distances(q_rad, placed, of)
-        beyond = found.distance_m - self._margin_m[of]
+        found = self._of_all(placed, of)
+        beyond = (found.distance_m - self._margin_m[found.pair]).reshape(len(q_rad), -1)
         rows, worst = np.arange(len(q_rad)), beyond.argmin(1)
-        return beyond[rows, worst], self._slopes(q_rad, placed, found, of, rows, worst)
+        return beyond[rows, worst], self._slopes(placed, found, rows * len(of) + worst)
 
     def near(self, q_rad: Array, within_m: Array, least_m: Array) -> NearPairs:
         """Pairs with less than (T,) `within_m` beyond their margin in poses (T, J), given bounds (T, P) of distances."""
-        within_m = within_m[:, None]
-        of = np.flatnonzero((least_m - self._margin_m < within_m).any(0))
-        placed = self._placed(q_rad, with_joints=True)
-        found = self._distances(q_rad, placed, of, least_m[:, of])
-        beyond = found.distance_m - self._margin_m[of]
-        pose, column = np.nonzero(beyond < within_m)
-        least_m = least_m.copy()
-        least_m[:, of] = found.distance_m
+        enough_m = self._margin_m + within_m[:, None]
+        placed, least_m = self._placed(q_rad, with_joints=True), least_m.copy()
+        found = self._nearer(placed, least_m, least_m < enough_m, enough_m)
+        room_m = found.distance_m - self._margin_m.take(found.pair)
+        near = np.flatnonzero(room_m < within_m.take(found.pose))
 
         def grows(some: Indices) -> Array:
-            return self._slopes(q_rad, placed, found, of, pose[some], column[some])
+            return self._slopes(placed, found, near[some])
 
-        return NearPairs(pose, beyond[pose, column], grows, least_m)
+        return NearPairs(found.pose[near], room_m[near], grows, least_m)
 
-    def _slopes(
-        self, q_rad: Array, placed: Placed, found: Measured, of: Indices, pose: Indices, column: Indices
-    ) -> Array:
-        """(R, J) derivatives by each joint of R of the distances `found` of pairs `of`, selected by pose and column."""
-        pair = of[column]
-        s, t = (x[pose, column, None] for x in found.along)
-        a, b = self._pairs[pair].T
-        point1 = placed.centre[pose, a] + s * placed.axis[pose, a]
-        point2 = placed.centre[pose, b] + t * placed.axis[pose, b]
-        apart = point2 - point1  # of segments, which have a direction even where capsules overlap
-        small = found.distance_m[pose, column] - self._margin_m[pair] < MEASURED_M
-        for i in np.flatnonzero(small & ~self._exact[pair]):
-            at = int(pose[i]), int(column[i])
-            points = found.points_m.get(at)
-            if points is None:
-                self._place(q_rad[at[0]])
-                points = self._measured(int(pair[i]))[1]
-            point1[i], point2[i] = points[:3], points[3:]
-            apart[i] = point2[i] - point1[i] if found.distance_m[at] >= 0 else point1[i] - point2[i]
-        normal = apart / np.maximum(np.sqrt(np.vecdot(apart, apart)), _LEAST_M)[:, None]
+    def _index_in(self, found: Measured, pose: Indices, pair: Indices) -> Indices:
+        """(n,) indices in `found` of pairs in poses, (n,) each."""
+        n = len(self._margin_m)
+        return np.searchsorted(found.pose * n + found.pair, pose * n + pair)
+
+    def _slopes(self, placed: Placed, found: Measured, at: Indices) -> Array:
+        """(n, J) derivatives by each joint of n of the distances `found`."""
+        pose, way = found.pose[at], found.way[at]
+        normal = way / np.maximum(np.sqrt(np.vecdot(way, way)), _LEAST_M)[:, None]
         # A joint moves a point r by axis x (r - anchor): along the normal, axis . (r x normal) - normal . (axis x anchor).
         screws = np.concatenate([placed.joint_axis, -cross(placed.joint_axis, placed.anchor)], -1)
-        forces = np.concatenate([cross((point1 + point2) / 2, normal), normal], -1)
-        body = self._model.geom_bodyid
-        turned: Array = (screws[pose] @ forces[..., None])[..., 0]
-        return turned * (self._above[body[b]] - self._above[body[a]])
+        forces = np.concatenate([cross(found.point[at], normal), normal], -1)
+        return (screws[pose] @ forces[..., None])[..., 0] * self._parted[found.pair[at]]

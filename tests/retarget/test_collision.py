@@ -17,11 +17,17 @@ mujoco: Any = importlib.import_module("mujoco")
 CONTACTS = ByName(list_robots(), lambda name: SelfContact(packaged(name)))
 
 
+def place(contact: SelfContact, q_rad: np.ndarray) -> None:
+    """Put the shapes of MuJoCo's data where they are in a pose (J,)."""
+    contact._data.qpos[contact._address] = q_rad
+    mujoco.mj_kinematics(contact._model, contact._data)
+
+
 def measured_m(contact: SelfContact, q_rad: np.ndarray) -> np.ndarray:
     """(T, P) distances by MuJoCo, one pair and pose after another."""
     found = np.empty((len(q_rad), len(contact._pairs)))
     for i, q in enumerate(q_rad):
-        contact._place(q)
+        place(contact, q)
         for p, (a, b) in enumerate(contact._pair_list):
             found[i, p] = mujoco.mj_geomDistance(contact._model, contact._data, a, b, 3.0, None)
     return found

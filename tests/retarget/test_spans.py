@@ -9,7 +9,9 @@ import numpy as np
 import pytest
 
 from retarget.path.collision import SelfContact
+from retarget.path.continuous_bounds import Sections
 from retarget.robot.loading import list_robots, load_robot
+from tests.retarget.test_collision import place as put
 from tests.support.robots import ByName, packaged
 from tests.support.sizes import few_and_long
 
@@ -32,22 +34,28 @@ def bounds_m(contact: SelfContact, control: np.ndarray) -> tuple[np.ndarray, np.
     """
     n, pairs = len(control), contact._every
     ends = (control[:, :-1] + control[:, 1:]) / 2
-    known = contact._known(ends.reshape(2 * n, -1), pairs)
+    placed = contact._placed(ends.reshape(2 * n, -1), with_joints=False)
+    known = contact._of_all(placed, pairs)
     step, bend = np.abs(np.diff(control, axis=1)), np.abs(np.diff(control, n=2, axis=1))[:, 0]
     moved = np.maximum(*(step[:, i] @ contact._sweep_m.T for i in (0, 1)))
     bent = np.stack([contact._spans.bends_m(step[i], bend[i : i + 1], moved[i : i + 1])[0] for i in range(n)])
     row, pair = (i.ravel() for i in np.meshgrid(np.arange(n), pairs, indexing="ij"))
-    least = contact._spans.least_m(known, np.stack([2 * row, 2 * row + 1]), pair, pair).reshape(n, -1)
+    rows, distance_m = np.stack([2 * row, 2 * row + 1]), known.distance_m.reshape(n, 2, -1)
+    ways = known.way.reshape(n, 2, len(pairs), 3).transpose(1, 0, 2, 3).reshape(2, -1, 3)
+    ends_m = distance_m.transpose(1, 0, 2).reshape(2, -1)
+    u = np.repeat([[0.0], [1.0]], len(pair), 1)
+    sections = Sections(row, pair, u, rows, ends_m, ways, moved.ravel(), bent.ravel())
+    second_order = contact._spans.least_m(sections, placed.centre, placed.turn).reshape(n, -1)
     u = np.linspace(0, 1, 21)[None, :, None]
     c0, c1, c2 = (control[:, i, None] for i in range(3))
     place = (c0 + c1) / 2 + (c1 - c0) * u + (c2 - 2 * c1 + c0) * (u * u / 2)
-    samples = contact._known(place.reshape(-1, place.shape[2]), pairs).distance.reshape(n, 21, -1)
-    for i, k, p in zip(*np.nonzero((samples < (least - bent)[:, None] + 1e-3) & ~contact._exact), strict=True):
-        contact._place(place[i, k])
+    samples = contact.distances_m(place.reshape(-1, place.shape[2])).reshape(n, 21, -1)
+    for i, k, p in zip(*np.nonzero((samples < second_order[:, None] + 1e-3) & ~contact._exact), strict=True):
+        put(contact, place[i, k])
         samples[i, k, p] = mujoco.mj_geomDistance(contact._model, contact._data, *contact._pair_list[p], 3.0, None)
     true = samples.min(1)
-    first_order = (known.distance[::2] + known.distance[1::2] - moved) / 2
-    return least - bent, first_order, true
+    first_order = (distance_m.sum(1) - moved) / 2
+    return second_order, first_order, true
 
 
 @pytest.mark.parametrize("name", few_and_long(["reference", "toddlerbot"], CONTACTS))
