@@ -19,7 +19,7 @@ _AIM_M = 0.002
 """Metres beyond the margin to which a pose is pushed out, a reserve for corners that velocity and acceleration limits cut."""
 _PUSHED_ON_M = 0.004
 """Metres beyond the margin to which a touching path is pushed."""
-_PUSHES = 6
+_PUSHES, _FEW_PUSHES = 6, 4
 _MOST_PUSHED_RAD = 0.15
 _COME_STEPS = 5
 """Number of steps in which a pose that pushes cannot free is approached from a clear pose."""
@@ -63,6 +63,12 @@ class Avoidance:
                 between = _between(clear, lost, before_rad)
                 clear[lost] = self._from_between(wanted_rad[lost], between, least.part(lost))
         return clear, stretches(touching)
+
+    def push_a_little(self, wanted_rad: Array, touching: NDArray[np.bool_], least: LeastDistances) -> Array:
+        """Poses (T, J) in which those that touch, (T,) `touching`, are pushed most or all of the way out of contact."""
+        clear, some = wanted_rad.copy(), np.flatnonzero(touching)
+        clear[some] = self._pushed_out(clear[some], _AIM_M, least.part(some), _FEW_PUSHES)[0]
+        return clear
 
     def push(self, eased_rad: Array, path_rad: Array, hit: NDArray[np.bool_], strength: float) -> Array:
         """Targets (T, J), changed near the segments `hit` (N - 2,) in which their path, (N, J) control points, touches."""
@@ -111,7 +117,9 @@ class Avoidance:
             free |= clear
         return q
 
-    def _pushed_out(self, q_rad: Array, aim_m: float, least: LeastDistances) -> tuple[Array, NDArray[np.bool_]]:
+    def _pushed_out(
+        self, q_rad: Array, aim_m: float, least: LeastDistances, pushes: int = _PUSHES
+    ) -> tuple[Array, NDArray[np.bool_]]:
         """Poses (T, J) moved little until they keep the margin plus `aim_m`, and (T,) whether each keeps the margin.
 
         Each iteration pushes apart the worst pair of each pose by the movement of least cost.
@@ -120,7 +128,7 @@ class Avoidance:
         yielding = np.linalg.inv(self._stiffness(q_rad))
         rows = np.arange(len(q))
         free = np.zeros(len(q), bool)
-        for _ in range(_PUSHES):
+        for _ in range(pushes):
             lack, way, least_m = self._contact.worst(q[rows], aim_m, least.at(q[rows]))
             free[rows] = lack <= aim_m
             some = lack > 0

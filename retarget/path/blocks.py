@@ -67,13 +67,21 @@ class BlockPlanner:
         """
         before, posed = (posed[:1], posed[1:]) if continued else (posed[:1], posed)
         least = self._contact.least(posed)
-        eased, interventions = self._avoidance.push_out(posed, begin.position_rad, least)
         allowed = self._contact.allowed_from(begin.position_rad)
-        path, hit, least = self._limited(eased, posed, before, begin, period, keep, settle, allowed, least)
-        if self._refiner and shown and (interventions or hit.any()):
+        touching = self._contact.touching(least)
+        if self._refiner and shown and touching.any():
+            # The refined path replaces the limiter's, so contacts on the limiter's are not searched.
+            eased = self._avoidance.push_a_little(posed, touching, least)
+            path = self._path(eased, posed, before, begin, period, settle)
             better = self._refined(self._refiner, path, shown, len(posed), period, keep, settle, allowed, least)
             if better is not None:
-                return better, interventions + (stretches(hit) if hit.any() else 0)
+                return better, stretches(touching)
+        eased, interventions = self._avoidance.push_out(posed, begin.position_rad, least)
+        path, hit, least = self._limited(eased, posed, before, begin, period, keep, settle, allowed, least)
+        if self._refiner and shown and not interventions and hit.any():
+            better = self._refined(self._refiner, path, shown, len(posed), period, keep, settle, allowed, least)
+            if better is not None:
+                return better, stretches(hit)
         for strength in STRENGTHS:
             if not hit.any():
                 break
@@ -161,10 +169,21 @@ class BlockPlanner:
         self, eased: Array, posed: Array, pose_before: Array, start: JointState, period: float, keep: int, settle: bool,
         allowed: Allowed | None, least: LeastDistances,
     ) -> tuple[Array, NDArray[np.bool_], LeastDistances]:  # fmt: skip
-        """Control points of a path near `eased` (T, J) that keeps every limit, its touching segments, and bounds of distances.
+        """`_path`, its touching segments, and bounds of distances.
 
-        The differences of `eased` from `posed` have the largest weight. When settling, the last pose is held until reached;
-        otherwise contacts while braking after `keep` frames or at the end count too.
+        Contacts while braking after `keep` frames or at the end count too, but for a path that settles.
+        """
+        points = self._path(eased, posed, pose_before, start, period, settle)
+        if settle:
+            return points, *self._contact.along_near(points, allowed, least)
+        return points, *self._cut_hits(points, period, keep, len(eased), allowed, least)
+
+    def _path(
+        self, eased: Array, posed: Array, pose_before: Array, start: JointState, period: float, settle: bool
+    ) -> Array:
+        """Control points of a path near `eased` (T, J) that keeps every limit.
+
+        The differences of `eased` from `posed` have the largest weight. When settling, the last pose is held until reached.
         """
         wanted, shown, led = controls_near(eased, pose_before), eased, eased - posed
         half = start.velocity_rad_s * (period / 2)
@@ -177,7 +196,4 @@ class BlockPlanner:
             return self._objective(shown[k:], led[k:])
 
         points = np.concatenate([[before], joined(wanted, before, position, period, self._limits, objective_from)])
-        if settle:
-            points = self._settled(points, len(points) - _SETTLE_FRAMES, period)
-            return points, *self._contact.along_near(points, allowed, least)
-        return points, *self._cut_hits(points, period, keep, len(eased), allowed, least)
+        return self._settled(points, len(points) - _SETTLE_FRAMES, period) if settle else points
