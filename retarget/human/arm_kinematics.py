@@ -59,13 +59,12 @@ class ArmKinematics:
             turned, above = turned @ R[:, :, j], turned
         fore = (turned @ self.fore0[:, None, :, None])[..., 0]
         upper = (above @ self.upper0[:, None, :, None])[..., 0] if self._has_elbow else fore
-        slope = np.zeros((*q.shape, 6))
-        n = self._n_shoulder
+        both = np.stack([upper, fore], 2)[:, :, None]
+        slope = cross(axes[:, :, :, None], both).reshape(*q.shape, 6)
         if self._has_offsets:
-            upper, slope[:, :, :n, :3] = self._upper_with_offsets(R, axes)
-        else:
-            slope[:, :, :n, :3] = cross(axes[:, :, :n], upper[:, :, None])
-        slope[..., 3:] = cross(axes, fore[:, :, None])
+            upper, slope[:, :, : self._n_shoulder, :3] = self._upper_with_offsets(R, axes)
+        if self._has_elbow:
+            slope[:, :, -1, :3] = 0.0
         return Bones(upper, fore, slope)
 
     def _rotations(self, q: Array) -> Array:

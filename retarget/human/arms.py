@@ -28,7 +28,7 @@ from retarget.robot.kinematics import cross, skew
 
 Array = NDArray[np.float64]
 _LEAST_ERROR_STEPS, _CUT_STEPS, _OFFSET_STEPS = 7, 3, 3
-_DONE_RAD = 1e-4
+_DONE_RAD = 1e-3
 _DAMPING = 1e-3
 _LARGEST_STEP_RAD = 0.6
 _LIMIT_COST, _ERROR_COST = 5.0, 4.0

@@ -192,9 +192,13 @@ class Poser:
         closed = arms.within_limits(chosen, upper, fore) if cut.any() else chosen
         if not arms.reaches_all:
             x = closed
-            for _ in range(_REST_STEPS):
+            x = closed
+            for k in range(_REST_STEPS):
                 x = self._calmer(arms, x, arms.bones(x), (upper, fore), weights, _CHOICE_PULL, before)
-                x = arms.within_limits(x, upper, fore, weights)  # the others compensate for a clipped joint
+                if k:  # the others compensate for a clipped joint
+                    x = arms.within_limits(x, upper, fore, weights)
+                else:
+                    x = np.minimum(np.maximum(x, arms.low), arms.high)
             return x, cut
         bones = arms.bones(closed)
         shown = bones.upper, bones.fore
