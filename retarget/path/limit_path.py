@@ -38,11 +38,13 @@ class QuadraticCost:
         joints: (G, w) indices of the joints of G groups.
         hessian: (G, T, w, w).
         linear: (G, T, w), b.
+        fixed: whether the cost is the same wherever it is linearised.
     """
 
     joints: Indices
     hessian: Array
     linear: Array
+    fixed: bool = False
 
 
 class Objective(Protocol):
@@ -64,7 +66,7 @@ class Angles:
     def around(self, first: int, q_rad: Array | None) -> Sequence[QuadraticCost]:
         """The squared distances from the wanted angles, independent of the path `q_rad`."""
         target = self._target_rad[:, first : None if q_rad is None else first + len(q_rad)]
-        return (QuadraticCost(self._joints, np.ones((*target.shape, 1)), target),)
+        return (QuadraticCost(self._joints, np.ones((*target.shape, 1)), target, fixed=True),)
 
 
 def limit_path(
@@ -120,13 +122,13 @@ def _solve(
     period_s: float,
 ) -> None:
     """Optimise in place a path (n, J) from frame `first` on, for all groups with a joint that is not `kept`."""
-    inside = kept.copy()
+    inside, settled = kept.copy(), kept
     for linearised in range(_LINEARISED):
         led = path.copy()
         at = None if not linearised else frames_between(path[None], position[None])[0]
         for group in objective.around(first, at):
-            some = np.flatnonzero(~kept[group.joints].all(1))
-            if not len(some):
+            some = np.flatnonzero(~settled[group.joints].all(1))
+            if not len(some) or (linearised and group.fixed):
                 continue
             joints = group.joints[some]
             bounds = Bounds(
@@ -145,7 +147,8 @@ def _solve(
             if nearer_path(problem, points, target, position[joints], step, bounds, inside[joints]):
                 path[:, joints.ravel()] = points[:, : len(path)].transpose(1, 0, 2).reshape(len(path), -1)
                 inside[joints] = True
-        if np.abs(path - led).max() < _SETTLED_RAD:
+        settled = kept | (np.abs(path - led).max(0) < _SETTLED_RAD)
+        if settled.all():
             break
 
 
