@@ -19,6 +19,7 @@ from retarget.path.limit_path import Objective, kept
 from retarget.path.limits import JointLimits
 from retarget.path.paths import JointState
 from retarget.path.refining import Refiner, Shown
+from retarget.path.spline_distances import Seen
 
 Array = NDArray[np.float64]
 _SETTLE_FRAMES = 16
@@ -66,8 +67,9 @@ class BlockPlanner:
         path is ready sooner but is not refined near contacts.
         """
         before, posed = (posed[:1], posed[1:]) if continued else (posed[:1], posed)
-        least = self._contact.least(posed)
-        allowed = self._contact.allowed_from(begin.position_rad)
+        least = self._contact.least(np.concatenate([begin.position_rad[None], posed]))
+        allowed = self._contact.allowed_from(least.least_m[0])
+        least = least.part(slice(1, None))
         touching = self._contact.touching(least)
         if self._refiner and shown and touching.any():
             # The refined path replaces the limiter's, so contacts on the limiter's are not searched.
@@ -109,12 +111,12 @@ class BlockPlanner:
         def cut(control: Array) -> Array:
             return self._settled(control, n_frames + 2, period) if settle else control[: n_frames + 2]
 
-        def touching(control: Array, least: LeastDistances) -> NDArray[np.bool_]:
+        def touching(control: Array, least: LeastDistances, seen: Seen) -> NDArray[np.bool_]:
             found, hit = cut(control), np.zeros(len(control) - 2, bool)
             if settle:
-                of_path, _ = self._contact.along_near(found, allowed, least)
+                of_path, _ = self._contact.along_near(found, allowed, least, seen)
             else:
-                of_path, _ = self._cut_hits(found, period, keep, n_frames, allowed, least)
+                of_path, _ = self._cut_hits(found, period, keep, n_frames, allowed, least, seen)
                 if keep < n_frames and of_path[keep - 1]:
                     hit[max(keep - _AROUND_CUT, 0) : keep + _AROUND_CUT] = True
             n = min(len(hit), len(of_path))
@@ -134,11 +136,12 @@ class BlockPlanner:
         return int(np.ceil((limits.velocity_rad_s / (limits.acceleration_rad_s2 * period)).max())) + 1
 
     def _cut_hits(
-        self, points: Array, period: float, keep: int, n_frames: int, allowed: Allowed | None, least: LeastDistances
-    ) -> tuple[NDArray[np.bool_], LeastDistances]:
+        self, points: Array, period: float, keep: int, n_frames: int, allowed: Allowed | None, least: LeastDistances,
+        seen: Seen | None = None,
+    ) -> tuple[NDArray[np.bool_], LeastDistances]:  # fmt: skip
         """Segments that touch when the path brakes at its end or after `keep` frames, and bounds of the distances on the path."""
         whole = np.concatenate([points, braking(points, period, self._limits)])
-        hit, least = self._contact.along_near(whole, allowed, least)
+        hit, least = self._contact.along_near(whole, allowed, least, seen)
         if keep < n_frames:
             cut = points[: keep + 2]
             stop = np.concatenate([cut[-2:], braking(cut, period, self._limits)])

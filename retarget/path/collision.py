@@ -13,6 +13,7 @@ from retarget.path.continuous_bounds import Sections, Spans
 from retarget.path.distances import MARGIN_M, Array, Indices, Placed
 from retarget.path.least_distances import LeastDistances
 from retarget.path.slopes import PairSlopes
+from retarget.path.spline_distances import Seen, SplineDistances
 from retarget.robot.description import mujoco
 from retarget.robot.robot import RobotModel
 
@@ -20,8 +21,8 @@ KEPT = 0.8
 """Share of the margin that is proved for every instant of a path."""
 _FROM_WITHIN = 0.1
 """Share of the margin by which a path that begins within the margin may come nearer while it turns away."""
-_EACH = 5
-"""Number of consecutive poses whose distances are bounded from the measured distances of one of them."""
+_SURELY_M = 0.02
+"""Metres beyond the margin below which distances in given poses are measured, for bounds in other poses."""
 _DEEPEST = 8
 """Halvings of a segment after which it counts as touching; distances this near the bound do not occur in practice."""
 _ROUNDING_M = 1e-6
@@ -44,13 +45,9 @@ class SelfContact(PairSlopes):
         return np.asarray((self.distances_m(q_rad) < share * self._margin_m).any(1), bool)
 
     def least(self, q_rad: Array) -> LeastDistances:
-        """Lower bounds of all distances in poses (T, J), exact below the margin; fast if consecutive poses are near each other."""
+        """Lower bounds of all distances in poses (T, J), exact below the margin."""
         placed = self._placed(q_rad, with_joints=False)
-        least_m = self._bounds(q_rad, placed)
-        near = least_m < self._margin_m
-        if near.any():
-            self._nearer(placed, least_m, near, self._margin_m)
-        return LeastDistances(q_rad, least_m, self._sweep_m)
+        return LeastDistances(q_rad, self._nearest_m(placed, self._margin_m + _SURELY_M), self._sweep_m)
 
     def touching(self, least: LeastDistances) -> NDArray[np.bool_]:
         """(T,) whether a pair is nearer than its margin in each frame of `least`."""
@@ -92,9 +89,8 @@ class SelfContact(PairSlopes):
         moved = above[:, some_of].any(1) if some_of else solid
         return np.flatnonzero(solid & moved & ~above[:, none_of].any(1))
 
-    def allowed_from(self, q_rad: Array) -> Allowed | None:
-        """Distances that a path from a pose (J,) within a margin must keep; None if the pose keeps all margins."""
-        distance_m = self.distances_m(q_rad[None])[0]
+    def allowed_from(self, distance_m: Array) -> Allowed | None:
+        """Distances that a path must keep from a pose with distances (P,), of `least`; None if the pose keeps all margins."""
         within = distance_m < self._margin_m
         if not within.any():
             return None
@@ -111,13 +107,16 @@ class SelfContact(PairSlopes):
         return self.along_near(control_rad, allowed, None)[0]
 
     def along_near(
-        self, control_rad: Array, allowed: Allowed | None, least: LeastDistances | None
+        self, control_rad: Array, allowed: Allowed | None, least: LeastDistances | None, seen: Seen | None = None
     ) -> tuple[NDArray[np.bool_], LeastDistances]:
-        """`along`, given lower bounds of the distances in nearby frames; also returns bounds from the second border on."""
+        """`along`, given lower bounds of the distances in nearby frames; also returns bounds from the second border on.
+
+        `seen` has distances on a spline that may share its first segments with this one; `least` is then needed.
+        """
         margin_m, kept_m = (self._margin_m, KEPT * self._margin_m) if allowed is None else allowed
         q_rad = (control_rad[:-1] + control_rad[1:]) / 2
-        placed = self._placed(q_rad, with_joints=False)
-        least_m = self._bounds(q_rad, placed) if least is None else least.at(q_rad, -1)
+        known = self._known(q_rad, control_rad, margin_m, least, seen)
+        border, least_m = known.border, known.least_m[known.border]
         step_rad = np.abs(control_rad[1:] - control_rad[:-1])
         # The speed is linear in time, so a segment moves by no more than the mean of the speeds at its ends.
         step = step_rad @ self._sweep_m.T  # (N - 1, P)
@@ -126,13 +125,13 @@ class SelfContact(PairSlopes):
         near = least_m[:-1] + least_m[1:] - moves < 2 * kept_m
         unsure[:-1] |= near
         unsure[1:] |= near
-        enough_m = np.broadcast_to(
-            margin_m, least_m.shape
-        ).copy()  # a pair this far at both ends of a segment is clear on it
-        np.maximum(enough_m[:-1], kept_m + moves / 2, out=enough_m[:-1])
-        np.maximum(enough_m[1:], kept_m + moves / 2, out=enough_m[1:])
-        found = self._nearer(placed, least_m, unsure, enough_m)
-        least = LeastDistances(q_rad[1:], least_m[1:], self._sweep_m)
+        # A pair that is this far at both ends of a segment is clear on it.
+        enough_m, wanted = np.zeros_like(known.least_m), np.zeros_like(known.measured)
+        enough_m[border[:-1]] = kept_m + moves / 2
+        enough_m[border[1:]] = np.maximum(enough_m[border[1:]], kept_m + moves / 2)
+        wanted[border] = unsure & ~known.measured[border]
+        known.enter(self._nearer(known.placed, known.least_m, wanted, np.maximum(enough_m, margin_m)))
+        least_m = known.least_m[border]
         touching = np.asarray((least_m < margin_m).any(1), bool)
         hit = touching[:-1] | touching[1:]
         near = (least_m[:-1] + least_m[1:] - moves < 2 * kept_m) & ~hit[:, None]
@@ -142,22 +141,33 @@ class SelfContact(PairSlopes):
             moved = np.maximum(step[:-1], step[1:])
             bend_rad = np.abs(control_rad[2:] - 2 * control_rad[1:-1] + control_rad[:-2])
             bent = self._spans.bends_m(step_rad, bend_rad, moved)
-            way = np.zeros((*least_m.shape, 3))
-            way[found.pose, found.pair] = found.way
-            ends = np.stack([segment, segment + 1])
+            ends = border[np.stack([segment, segment + 1])]
             sections = Sections(
-                segment, pair, np.repeat([[0.0], [1.0]], len(pair), 1), ends, least_m[ends, pair], way[ends, pair],
-                moved[segment, pair], bent[segment, pair],
+                segment, pair, np.repeat([[0.0], [1.0]], len(pair), 1), ends, known.least_m[ends, pair],
+                known.way[ends, pair], moved[segment, pair], bent[segment, pair],
             )  # fmt: skip
-            self._halve(sections, placed, control_rad, margin_m, kept_m, hit)
-        return hit, least
+            self._halve(sections, known, control_rad, margin_m, kept_m, hit)
+        return hit, LeastDistances(q_rad[1:], least_m[1:], self._sweep_m)
+
+    def _known(
+        self, q_rad: Array, control_rad: Array, margin_m: Array, least: LeastDistances | None, seen: Seen | None
+    ) -> SplineDistances:
+        """What is known at the borders (B, J) of the segments of a spline, and in their middles."""
+        if seen is None or least is None:
+            placed = self._placed(q_rad, with_joints=False)
+            least_m = self._nearest_m(placed, margin_m) if least is None else least.at(q_rad, -1)
+            return SplineDistances.at_borders(placed, least_m)
+        shared = seen.shared(control_rad)
+        others = np.concatenate([[0], np.arange(shared + 1, len(q_rad))])
+        placed = self._placed(q_rad[others], with_joints=False)
+        return SplineDistances.after(seen, shared, placed, least.at(q_rad, -1)[others])
 
     def _halve(
-        self, sections: Sections, placed: Placed, control_rad: Array, margin_m: Array, kept_m: Array,
+        self, sections: Sections, known: SplineDistances, control_rad: Array, margin_m: Array, kept_m: Array,
         hit: NDArray[np.bool_],
     ) -> None:  # fmt: skip
         """Halve sections until each is known to be clear; write true into `hit` (N - 2,) for segments in which one is not."""
-        centre, turn = placed.centre, placed.turn
+        centre, turn, seen = known.placed.centre, known.placed.turn, known.middle
         for _ in range(_DEEPEST):
             near = ~hit[sections.segment]
             bounded = near & self._bounded[sections.pair]
@@ -166,15 +176,21 @@ class SelfContact(PairSlopes):
             if not near.any():
                 return
             sections = sections.of(near)
-            # No two sections but those of different pairs begin in the same pose.
-            _, one, pose = np.unique(sections.ends[0], return_index=True, return_inverse=True)
-            q_rad = _spline(control_rad, sections.segment[one], sections.u[:, one].mean(0))
-            between = self._placed(q_rad, with_joints=False)
-            middle = self._measure(between, pose, sections.pair)
-            hit[sections.segment[middle.distance_m < margin_m[sections.pair]]] = True
-            sections = sections.halves(len(centre) + pose, middle.distance_m, middle.way)
-            centre, turn = np.concatenate([centre, between.centre]), np.concatenate([turn, between.turn])
+            pose = seen[sections.segment]
+            distance_m, way = known.least_m[pose, sections.pair], known.way[pose, sections.pair]
+            new = np.flatnonzero(pose < 0)
+            if len(new):
+                # No two sections but those of different pairs begin in the same pose.
+                _, one, of = np.unique(sections.ends[0, new], return_index=True, return_inverse=True)
+                q_rad = _spline(control_rad, sections.segment[new[one]], sections.u[:, new[one]].mean(0))
+                between = self._placed(q_rad, with_joints=False)
+                found = self._measure(between, of, sections.pair[new])
+                pose[new], distance_m[new], way[new] = len(centre) + of, found.distance_m, found.way
+                centre, turn = np.concatenate([centre, between.centre]), np.concatenate([turn, between.turn])
+            hit[sections.segment[distance_m < margin_m[sections.pair]]] = True
+            sections = sections.halves(pose, distance_m, way)
             sections = sections.of(sections.distance_m.sum(0) - sections.moved_m < 2 * kept_m[sections.pair])
+            seen = np.full_like(seen, -1)  # of the first halves no middle is known
         hit[sections.segment] = True
 
     def clear_along(self, way_rad: Array, share: float = KEPT, first_slack_m: Array | None = None) -> bool:
@@ -208,13 +224,11 @@ class SelfContact(PairSlopes):
             first, last = np.concatenate([first, between]), np.concatenate([between, last])
         return False
 
-    def _bounds(self, q_rad: Array, placed: Placed) -> Array:
-        """(T, P) lower bounds of distances in poses (T, J), each near the next: every `_EACH`-th pose is measured."""
-        frames = np.arange(len(q_rad))
-        some = frames[min(_EACH // 2, len(frames) - 1) :: _EACH]
-        nearest = np.minimum(frames // _EACH, len(some) - 1)
-        measured = self._of_all(placed.of(some), self._every).distance_m.reshape(len(some), -1)
-        return measured[nearest] - np.abs(q_rad - q_rad[some[nearest]]) @ self._sweep_m.T
+    def _nearest_m(self, placed: Placed, enough_m: Array) -> Array:
+        """(T, P) lower bounds of all distances in T poses, exact where less than `enough_m` (P,) and small."""
+        least_m = np.full((len(placed.centre), len(self._margin_m)), -np.inf)
+        self._nearer(placed, least_m, np.ones(least_m.shape, bool), enough_m)
+        return least_m
 
     def _extents_m(self) -> tuple[Array, Array]:
         """(geoms, 3) half edges of boxes and half lengths of capsules, and (geoms,) radii, 0 for boxes."""

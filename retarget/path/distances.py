@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from retarget.path.boxes import box_to_box, capsule_to_box
 from retarget.path.capsules import nearest_along
+from retarget.path.shape_pairs import joints_above, pairs_that_can_meet
 from retarget.robot.description import description_spec, mujoco
 from retarget.robot.robot import RobotModel
 
@@ -41,9 +42,11 @@ class Placed:
     joint_axis: Array
     anchor: Array
 
-    def of(self, poses: Indices) -> Placed:
-        """The shapes in some of the poses."""
-        return Placed(self.centre[poses], self.axis[poses], self.turn[poses], self.joint_axis[:0], self.anchor[:0])
+    def and_also(self, more: Placed) -> Placed:
+        """The shapes in these poses, then in those of `more`, without joints."""
+        none = self.joint_axis[:0], self.anchor[:0]
+        centre, axis = np.concatenate([self.centre, more.centre]), np.concatenate([self.axis, more.axis])
+        return Placed(centre, axis, np.concatenate([self.turn, more.turn]), *none)
 
 
 @dataclass(frozen=True)
@@ -75,8 +78,8 @@ class PairDistances:
         self._address = np.array([j.qposadr[0] for j in joints])
         self._joint_ids = np.array([j.id for j in joints])
         self._shapes()
-        self._above = self._joints_above()
-        self._take(self._pairs_that_can_meet())
+        self._above = joints_above(self._model, self._joint_ids)
+        self._take(pairs_that_can_meet(self._model, self._above))
         resting = self.distances_m(robot.rest_rad[None])[0]
         self._take(self._pairs[resting > 0])
         # A pair that rests within the margin may stay there.
@@ -99,9 +102,10 @@ class PairDistances:
         """
         at = np.flatnonzero(near)
         pose, pair = np.divmod(at, near.shape[1])
-        centre, known = placed.centre.reshape(-1, 3), least_m.reshape(-1)
-        a, b = (pose * placed.centre.shape[1] + of.take(pair) for of in self._shape)
-        first: Array = centre.take(a, 0)
+        centre: Array = placed.centre.reshape(-1, 3)
+        known: Array = least_m.reshape(-1)
+        a, b = self._rows(placed, pose, pair)
+        first = centre.take(a, 0)
         between = centre.take(b, 0) - first
         spheres = np.sqrt(np.vecdot(between, between)) - self._reach_m.take(pair)
         known[at] = np.maximum(known.take(at), spheres)
@@ -154,10 +158,16 @@ class PairDistances:
 
     def _bound_boxes(self, placed: Placed, at: Indices, found: Measured) -> None:
         """Write nearer bounds of the distances of boxes to boxes into the elements `at` (n,) of `found`."""
-        t, (a, b) = found.pose[at], self._shape[:, found.pair[at]]
-        turn_a, turn_b = (placed.turn[t, g].reshape(-1, 3, 3) for g in (a, b))
-        offset = placed.centre[t, b] - placed.centre[t, a]
-        apart, way = box_to_box(offset, turn_a, self._box_half_m[a], turn_b, self._box_half_m[b])
+        pair = found.pair.take(at)
+        first, second = self._rows(placed, found.pose.take(at), pair)
+        turns: Array = placed.turn.reshape(-1, 3, 3)
+        centres: Array = placed.centre.reshape(-1, 3)
+        a: Indices = self._shape[0].take(pair)
+        b: Indices = self._shape[1].take(pair)
+        apart, way = box_to_box(
+            centres.take(second, 0) - centres.take(first, 0),
+            turns.take(first, 0), self._box_half_m.take(a, 0), turns.take(second, 0), self._box_half_m.take(b, 0),
+        )  # fmt: skip
         some = at[apart > 0]
         found.distance_m[some] = np.maximum(found.distance_m[some], apart[apart > 0])
         found.way[some] = way[apart > 0]
@@ -167,13 +177,17 @@ class PairDistances:
 
         MuJoCo measures pairs in which an axis crosses the box, and cylinders, which are smaller than their capsules.
         """
-        t, pair = found.pose[at], found.pair[at]
-        box, other = self._box[pair], self._round[pair]
-        turn = placed.turn[t, box].reshape(-1, 3, 3)  # columns are the box's axes
-        centre, axis = placed.centre[t, other], placed.axis[t, other]
-        offset = ((centre - placed.centre[t, box])[:, None] @ turn)[:, 0]
+        pair = found.pair.take(at)
+        box, other = self._box.take(pair), self._round.take(pair)
+        before: Indices = placed.centre.shape[1] * found.pose.take(at)
+        centres: Array = placed.centre.reshape(-1, 3)
+        axes: Array = placed.axis.reshape(-1, 3)
+        turn: Array = placed.turn.reshape(-1, 3, 3).take(before + box, 0)  # columns are the box's axes
+        centre: Array = centres.take(before + other, 0)
+        axis: Array = axes.take(before + other, 0)
+        offset = ((centre - centres.take(before + box, 0))[:, None] @ turn)[:, 0]
         apart, way, nearest = capsule_to_box(
-            offset, (axis[:, None] @ turn)[:, 0], self._half_m[other], self._box_half_m[box]
+            offset, (axis[:, None] @ turn)[:, 0], self._half_m.take(other), self._box_half_m.take(box, 0)
         )
         found.distance_m[at] = np.maximum(found.distance_m[at], apart - self._radius_m[other])
         some = apart > 0
@@ -262,36 +276,3 @@ class PairDistances:
     def _keep(self, margin_m: Array) -> None:
         """Keep these margins (P,) from now on."""
         self._margin_m, self._small_m = margin_m, margin_m + MEASURED_M
-
-    def _pairs_that_can_meet(self) -> Indices:
-        """(P, 2) shapes that MuJoCo would check for contact, on bodies at least three steps of the tree and two joints apart."""
-        model = self._model
-        parent, body = model.body_parentid, model.geom_bodyid
-        excluded = {int(s) for s in model.exclude_signature}
-        plane = model.geom_type == int(mujoco.mjtGeom.mjGEOM_PLANE)
-        found: list[tuple[int, int]] = []
-        for g in range(model.ngeom):
-            for h in range(g):
-                a, b = sorted((int(body[g]), int(body[h])))
-                touches = (
-                    model.geom_contype[g] & model.geom_conaffinity[h]
-                    or model.geom_contype[h] & model.geom_conaffinity[g]
-                )
-                beside = (
-                    a == b
-                    or parent[a] == parent[b]
-                    or a in (parent[b], parent[parent[b]])
-                    or b in (parent[a], parent[parent[a]])
-                )
-                fixed = np.abs(self._above[a] - self._above[b]).sum() <= 1
-                if touches and not (beside or fixed or plane[g] or plane[h] or (a << 16) + b in excluded):
-                    found.append((h, g))
-        return np.array(found, np.int64).reshape(-1, 2)
-
-    def _joints_above(self) -> Array:
-        """(bodies, J) 1 where a joint moves a body."""
-        above = np.zeros((self._model.nbody, len(self._joint_ids)))
-        for b in range(1, self._model.nbody):
-            above[b] = above[self._model.body_parentid[b]]
-            above[b, self._model.jnt_bodyid[self._joint_ids] == b] = 1
-        return above

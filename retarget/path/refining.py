@@ -17,10 +17,11 @@ from retarget.path.collision import KEPT, SelfContact
 from retarget.path.least_distances import LeastDistances
 from retarget.path.limits import JointLimits
 from retarget.path.slopes import NearPairs
+from retarget.path.spline_distances import Seen
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
-Touching = Callable[[Array, LeastDistances], NDArray[np.bool_]]
+Touching = Callable[[Array, LeastDistances, Seen], NDArray[np.bool_]]
 Shown = Callable[[Array], tuple[Array, Array]]
 """Linearises half the squared error of frames (T, J): Hessian (T, J, J) and negative gradient (T, J)."""
 _TRUST_RAD = (0.4, 0.2, 0.1, 0.1, 0.1)
@@ -86,7 +87,7 @@ class Refiner:
             near, least = self._near(control, least)
             if k:
                 lacks = near.pose[near.room_m < np.where(near.pose < N, 0.0, -_BETWEEN_M)]
-                hit = np.isin(np.arange(N), lacks % N) if len(lacks) else touching(control, least)
+                hit = np.isin(np.arange(N), lacks % N) if len(lacks) else touching(control, least, Seen(control, near))
                 if not hit.any():
                     return control
                 more_m[hit] += _MORE_M

@@ -22,12 +22,16 @@ class NearPairs:
         room_m: (R,) metres between them beyond their margin.
         grows: gives for r of the R pairs the derivatives (r, J) of their room by each joint, metres per radian.
         least_m: (T, P) lower bounds of all distances in the poses.
+        placed: the shapes in the poses.
+        found: the distances that were measured.
     """
 
     pose: Indices
     room_m: Array
     grows: Callable[[Indices], Array]
     least_m: Array
+    placed: Placed
+    found: Measured
 
 
 class PairSlopes(PairDistances):
@@ -72,7 +76,7 @@ class PairSlopes(PairDistances):
         def grows(some: Indices) -> Array:
             return self._slopes(placed, found, near[some])
 
-        return NearPairs(found.pose[near], room_m[near], grows, least_m)
+        return NearPairs(found.pose[near], room_m[near], grows, least_m, placed, found)
 
     def _index_in(self, found: Measured, pose: Indices, pair: Indices) -> Indices:
         """(n,) indices in `found` of pairs in poses, (n,) each."""
