@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
+Indices = NDArray[np.int64]
 UNSEEN = 0.5
 """Observability below which a joint's angle is interpolated from neighbouring frames."""
 _OUT_OF_QUESTION_RAD = 0.5
@@ -45,7 +46,7 @@ def choose(solutions: Array, unary_cost: Array, observability: Array, previous_r
     move = _moved(known)
     if hidden.any():
         move += _HIDDEN_SHARE * _moved(unhidden)
-    branch = np.array([_cheapest(move[g].tolist(), unary_cost[g].tolist()) for g in range(G)])
+    branch = _cheapest(move, unary_cost)
     at = branch[:, :, None, None]
     return np.take_along_axis(solutions, at, 2)[:, :, 0], np.take_along_axis(observability, at, 2)[:, :, 0]
 
@@ -67,24 +68,21 @@ def fill_unseen(q_rad: Array, observability: Array, previous_rad: float) -> None
         q_rad[hidden] = np.interp(np.flatnonzero(hidden) + 1, frames, known)
 
 
-def _cheapest(move: list[list[list[float]]], own: list[list[float]]) -> list[int]:
-    """Index of the solution of each frame, for costs of transitions (T, C to, C from) and of solutions (T, C).
+def _cheapest(move: Array, own: Array) -> Indices:
+    """(G, T) index of the solution in each frame, for costs of transitions (G, T, C to, C from) and of solutions (G, T, C).
 
-    All solutions start from one pose. The function takes lists of numbers because for four solutions a loop is faster than arrays.
+    All solutions start from one pose.
     """
-    total = [0.0] * len(own[0])
-    came: list[list[int]] = []
-    for to_each, own_t in zip(move, own, strict=True):
-        best: list[int] = []
-        after: list[float] = []
-        for costs, unary_cost in zip(to_each, own_t, strict=True):
-            via = [a + b for a, b in zip(total, costs, strict=True)]
-            least = min(via)
-            best.append(via.index(least))
-            after.append(least + unary_cost)
-        came.append(best)
-        total = after
-    branch = [total.index(min(total))]
-    for best in reversed(came[1:]):
-        branch.append(best[branch[-1]])
-    return branch[::-1]
+    G, T, C = own.shape
+    total, came = np.zeros((G, C)), np.empty((T, G, C), np.int64)
+    for t in range(T):
+        via = total[:, None] + move[:, t]
+        via.argmin(2, out=came[t])
+        total = np.minimum.reduce(via, 2) + own[:, t]
+    branch, last = np.empty((G, T), np.int64), total.argmin(1).tolist()
+    for g, at in enumerate(last):
+        back = [at]
+        for best in reversed(came[1:, g].tolist()):
+            back.append(best[back[-1]])
+        branch[g] = back[::-1]
+    return branch

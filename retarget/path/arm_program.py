@@ -111,12 +111,17 @@ class _Solver:
         self._differences, self._squares = _differences_of(N)
         self._lower_triangle = _lower_triangle(n)
         self._take_rooms(boxes, rooms)
-        self._fixed: Array = np.zeros((N, n, 2 * n + 1))
-        self._fixed[:, :, ::n] = self._squared(weights)
+        # Element (row, column) of a block has its place in the band at 2 n column + row from the block's first element.
+        self._band: Array = np.zeros((N, n, 2 * n + 1))
+        strides = 8 * n * (2 * n + 1), 16 * n, 8
+        self._own = as_strided(self._band, (N, n, n), strides)
+        self._before = as_strided(self._band.reshape(-1)[n:], (N - 1, n, n), strides)
+        self._band[:, :, ::n] = self._squared(weights)
         quarter = hessian / 4
         own = quarter.copy()
         own[:-1] += quarter[1:]
-        self._add_blocks(self._fixed, own, quarter[1:])
+        self._add_blocks(own, quarter[1:])
+        self._fixed = self._band.copy()
         # A change of the control points (N, n) after a row of 0, and the same with each point after the previous one.
         self._padded = np.zeros(N * n + n)
         self._pairs = as_strided(self._padded, (N, 2 * n, 1), (n * 8, 8, 8), writeable=False)
@@ -195,26 +200,23 @@ class _Solver:
     def _normal(self, weight: Array) -> Array:
         """(N n, 2 n + 1) lower band of the normal matrix, row by row."""
         m, (N, n) = self._n_boxes, self._shape
-        band = self._fixed.copy()
-        band[:, :, ::n] += self._squared((weight[:m] + weight[m : 2 * m]).reshape(3, N, n))
+        self._band[:] = self._fixed
+        self._band[:, :, ::n] += self._squared((weight[:m] + weight[m : 2 * m]).reshape(3, N, n))
         each = (self._grows_turned * weight[2 * m :].reshape(N, 1, -1)) @ self._grows
         own = each[:, n:, n:]
         own[:-1] += each[1:, :n, :n]
-        self._add_blocks(band, own, each[1:, n:, :n])
-        return band.reshape(-1, 2 * n + 1)
+        self._add_blocks(own, each[1:, n:, :n])
+        return self._band.reshape(-1, 2 * n + 1)
 
     def _squared(self, weights: Array) -> Array:
         """(N, n, 3) the band's columns 0, n and 2 n of weights (3, N, n) of squared differences."""
         N, n = self._shape
         return (self._squares @ weights.reshape(3 * N, n)).reshape(3, N, n).transpose(1, 2, 0)
 
-    def _add_blocks(self, band: Array, own: Array, before: Array) -> None:
-        """Add to a lower band (N, n, 2 n + 1) the blocks of control points with themselves, (N, n, n), and with the one before."""
-        N, n = self._shape
-        # Element (row, column) of a block has its place in the band at 2 n column + row from the block's first element.
-        strides = 8 * n * (2 * n + 1), 16 * n, 8
-        as_strided(band, (N, n, n), strides)[...] += own.transpose(0, 2, 1) * self._lower_triangle
-        as_strided(band.reshape(-1)[n:], (N - 1, n, n), strides)[...] += before.transpose(0, 2, 1)
+    def _add_blocks(self, own: Array, before: Array) -> None:
+        """Add to the band the blocks of control points with themselves, (N, n, n), and with the one before, (N - 1, n, n)."""
+        self._own += own.transpose(0, 2, 1) * self._lower_triangle
+        self._before += before.transpose(0, 2, 1)
 
 
 def _halves_summed(frames: Array) -> Array:

@@ -200,11 +200,12 @@ class PairDistances:
         """Write MuJoCo's distances, as `_bound_boxes`."""
         model, data, measure = self._model, self._data, mujoco.mj_geomDistance
         points, metres, before = np.zeros((len(at), 6)), list[float](), -1
+        place, turn, pairs = data.geom_xpos, data.geom_xmat, self._pair_list
         for row, pose, pair in zip(points, found.pose[at].tolist(), found.pair[at].tolist(), strict=True):
             if pose != before:  # a distance depends on nothing but the places of the shapes
-                data.geom_xpos[:], data.geom_xmat[:] = placed.centre[pose], placed.turn[pose]
+                place[:], turn[:] = placed.centre[pose], placed.turn[pose]
                 before = pose
-            metres.append(measure(model, data, *self._pair_list[pair], _FARTHEST_M, row))
+            metres.append(measure(model, data, *pairs[pair], _FARTHEST_M, row))
         found.distance_m[at] = metres
         way = points[:, 3:] - points[:, :3]
         some = way.any(1)
