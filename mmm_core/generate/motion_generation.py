@@ -17,6 +17,7 @@ from torch import Tensor
 
 from mmm_core.generate.at_once import StepIds, arms_of, composed, features_of, mirrored_ids
 from mmm_core.generate.interpretation import ReadCommand, interpret
+from mmm_core.generate.kept_sizes import with_kept_sizes
 from mmm_core.generate.motion_model import MotionModel
 from mmm_core.generate.repeated_strokes import expected_tokens, repeated, with_few_strokes
 from mmm_core.generate.result import GenerationResult, StageTimer, no_motion, understood_as
@@ -197,9 +198,9 @@ class MotionGeneration:
             begins = [end // FRAMES_PER_TOKEN - len(step.ids) for end, step in zip(ends, made, strict=True)]
             features = features_of(self._engine, ids, list(zip(begins, made, strict=True)))
             if any(not s.plain for s in stretches):
-                features, ends = performed(features, stretches)
-            else:
-                ends = [stretch.end for stretch in stretches]
+                features, ends = performed(
+                    features, with_kept_sizes(features, stretches, self._words_of_steps[: len(made)])
+                )
             motion = self._engine.motion_of(features, self._text, self._seed, verdict, n_frames, is_mirrored=mirrored)
         else:
             motion = self._engine.motion(ids, self._text, self._seed, verdict, n_frames, is_mirrored=mirrored)
@@ -215,7 +216,9 @@ class MotionGeneration:
         """One scene for each step, with the second at which it ends; a transition belongs to the step after it."""
         if len(ends) < len(self._steps):  # a preview has the first step alone
             ends = [*ends, *(ends[-1] + s.n_tokens * FRAMES_PER_TOKEN for s in self._steps[len(ends) :])]
-        return tuple(
-            Scene(end / FPS, f"{step.words}\n{step.understood or self._verdict.nearest}")
-            for end, step in zip(ends, self._steps, strict=True)
-        )
+        return tuple(Scene(end / FPS, words) for end, words in zip(ends, self._words_of_steps, strict=True))
+
+    @property
+    def _words_of_steps(self) -> list[str]:
+        """For each step, words that may name its gestures."""
+        return [f"{step.words}\n{step.understood or self._verdict.nearest}" for step in self._steps]

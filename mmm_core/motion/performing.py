@@ -27,6 +27,10 @@ MOST_ARM_RAD = 2.9
 """Radians from the first frame that an enlarged arm joint reaches at most; `_MOST` has other bounds for some joints."""
 _MOST = {18: 2.4, 19: 2.4, 13: 0.6, 14: 0.6}
 """Radians from the first frame that enlarged elbows and collars reach at most."""
+_SIZED = (*_TRUNK_HEAD, *_ARMS)
+"""Joints whose rotations a size changes."""
+_N_BODY = len(_TRUNK_HEAD)
+_MOST_RAD = np.array([_MOST.get(joint, MOST_ARM_RAD) for joint in _SIZED])
 CYCLE_MISFIT = 0.7
 """Largest misfit of a cycle whose strokes are scaled about their middle; the model's waves and claps reach it."""
 ROUNDS = 3
@@ -130,31 +134,53 @@ def _features(yaw: Array, root: Array, local: Array, where: Array) -> NDArray[np
 
 
 def _sized(local: Array, rest: Array, stretch: Stretch, n_frames: int, strokes: Strokes | None) -> Array:
-    """Rotations (T, 22, 3, 3) in the size of a stretch.
+    """Rotations (T, 22, 3, 3) in the size of a stretch: the angle of each from a reference is multiplied.
 
-    A hand's path grows less than the rotations of its arm, so the factor on the rotations is corrected over a few rounds; the
-    round whose path comes nearest to the requested size wins.
+    The reference is the first frame; for arms that repeat strokes it is the path of the strokes. A hand's path grows less than
+    the rotations of its arm, so the factor on the rotations is corrected over a few rounds; the round whose path comes nearest
+    to the requested size wins.
     """
     period = int(np.median(np.diff(strokes.frames))) if strokes is not None and is_cyclic(strokes) else 0
     weights = _weights(stretch, n_frames)
+    reference = np.repeat(rest[None, _SIZED], len(local), axis=0)
+    if period:
+        smooth = uniform_filter1d(six_d(local[:, _ARMS]), max(3, period), axis=0, mode="nearest")
+        from_rest = _rotation_vectors(np.swapaxes(rest[_ARMS,], -1, -2) @ from_six_d(smooth))
+        lower = (np.minimum(weights, 1.0) ** _PATH)[:, None, None]
+        reference[:, _N_BODY:] = rest[_ARMS,] @ _matrices(from_rest * lower)
+    away = _rotation_vectors(np.swapaxes(reference, -1, -2) @ local[:, _SIZED])
+    angle = np.linalg.norm(away, axis=-1)
+    most = np.maximum(angle, _MOST_RAD) / np.maximum(angle, 1e-6)
     way = _way_m(local, period)
+    out = local.copy()
+    body, arms = slice(None, _N_BODY), slice(_N_BODY, None)
+    out[:, _TRUNK_HEAD] = _turned(reference, away, np.minimum(weights[:, None], most), body)
     found: list[tuple[float, Array]] = []
     factor = stretch.size
     for _ in range(ROUNDS):
-        arms = _weights(replace(stretch, size=factor), n_frames)
-        out = _scaled(local, rest, weights, arms, period)
+        arm_weights = _weights(replace(stretch, size=factor), n_frames)
+        out[:, _ARMS] = _turned(reference, away, np.minimum(arm_weights[:, None], most), arms)
         if way < _LEAST_WAY_M:
             return out
         reached = _way_m(out, period) / way
-        found.append((abs(reached - stretch.size), out))
+        found.append((abs(reached - stretch.size), out.copy()))
         factor = float(np.clip(factor * stretch.size / max(reached, 0.05), 1 / _MOST_FACTOR, _MOST_FACTOR))
     return min(found, key=lambda pair: pair[0])[1]
 
 
-def _led(rotations: Array, rest: Array, factors: Array) -> Array:
-    """Rotations (T, 3, 3) whose angle from `rest` (3, 3) is multiplied by (T,) factors."""
-    away = Rotation.from_matrix(rest.T @ rotations).as_rotvec()
-    return rest @ Rotation.from_rotvec(away * factors[:, None]).as_matrix()
+def _turned(reference: Array, away: Array, factors: Array, joints: slice) -> Array:
+    """Rotations (T, n, 3, 3) of some joints: the reference, turned by its angles times (T, J) factors."""
+    return reference[:, joints] @ _matrices(away[:, joints] * factors[:, joints, None])
+
+
+def _rotation_vectors(rotations: Array) -> Array:
+    """Rotation vectors (..., 3) of rotations (..., 3, 3)."""
+    return Rotation.from_matrix(rotations.reshape(-1, 3, 3)).as_rotvec().reshape(rotations.shape[:-1])
+
+
+def _matrices(vectors: Array) -> Array:
+    """Rotations (..., 3, 3) of rotation vectors (..., 3)."""
+    return Rotation.from_rotvec(vectors.reshape(-1, 3)).as_matrix().reshape(*vectors.shape, 3)
 
 
 def _way_m(local: Array, period: int) -> float:
@@ -165,25 +191,6 @@ def _way_m(local: Array, period: int) -> float:
         away = wrists - uniform_filter1d(wrists, max(3, period), axis=0, mode="nearest")
         return float(np.ptp(away, axis=0).max())
     return float(np.linalg.norm(wrists - wrists[0], axis=-1).max())
-
-
-def _scaled(local: Array, rest: Array, weights: Array, arm_weights: Array, period: int) -> Array:
-    """Rotations (T, 22, 3, 3) whose angle from a reference is multiplied by (T,) weights, `arm_weights` for arms.
-
-    The reference is the first frame; for arms with a `period` in frames it is the path of the strokes.
-    """
-    out = local.copy()
-    for joint in (*_TRUNK_HEAD, *_ARMS):
-        reference = np.broadcast_to(rest[joint], local[:, joint].shape)
-        if period and joint in _ARMS:
-            smooth = uniform_filter1d(six_d(local[:, joint]), max(3, period), axis=0, mode="nearest")
-            reference = _led(from_six_d(smooth), rest[joint], np.minimum(weights, 1.0) ** _PATH)
-        away = Rotation.from_matrix(np.swapaxes(reference, -1, -2) @ local[:, joint]).as_rotvec()
-        angle = np.linalg.norm(away, axis=-1)
-        most = np.maximum(angle, _MOST.get(joint, MOST_ARM_RAD))
-        factor = np.minimum(arm_weights if joint in _ARMS else weights, most / np.maximum(angle, 1e-6))
-        out[:, joint] = reference @ Rotation.from_rotvec(away * factor[:, None]).as_matrix()
-    return out
 
 
 def _lean(local: Array, stretch: Stretch, n_frames: int) -> None:

@@ -24,7 +24,7 @@ from mmm_core.language.reading import read
         ("we saw my grandmother, she is a bit shy, so maybe just nod at her", "nod at her"),
         ("show them where the exit is, it's to your right", "point to the right"),
         ("wave at them but make it quick", "wave at them (1.6 times as fast)"),
-        ("throw your arms out as wide as they'll go", "throw your arms out (1.6 times as large)"),
+        ("throw your arms out as wide as they'll go", "throw your arms out (1.4 times as large)"),
         # and what these rules must leave alone
         ("hold your right arm up for a second", "raise your right arm up (held for 1 s)"),
         ("nod and stay so for two seconds", "nod (held for 2 s)"),

@@ -224,7 +224,7 @@ class TestManner:
             ("shake your head, but so I can hardly see it", "shake your head (0.56 times as large)"),
             ("bow so nobody notices", "bow (0.56 times as large)"),
             ("stir the glue with teeny weeny movements", "stir the glue (0.56 times as large)"),
-            ("bow as far as the hinge goes", "bow (1.6 times as large)"),
+            ("bow as far as the hinge goes", "bow (1.4 times as large)"),
             ("Just the one nod.", "nod once"), ("You should be waving to Nana four times.", "wave to nana four times"),
             ("Pump your fist in the air: one, two, three!", "pump your fist in the air three times"),
             ("give me half a dozen claps", "give me six claps"), ("do a couple of nods", "do two nods"),

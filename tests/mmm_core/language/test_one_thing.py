@@ -29,7 +29,7 @@ from mmm_core.language.reading import read
         ("nod as fast as the motors allow", "nod (1.8 times as fast)"), ("shake your head violently",
          "shake your head (1.6 times as fast)"),
         ("wave as fast as your arm can", "wave (1.8 times as fast)"),
-        ("bow down as low as you can go", "bow politely (1.6 times as large)"), ("raise your arm just an inch",
+        ("bow down as low as you can go", "bow politely (1.4 times as large)"), ("raise your arm just an inch",
          "raise your right hand (0.56 times as large)"),
         ("lower your head over five seconds", "look down (0.5 times as fast)"),
         # and what looks like these
