@@ -40,6 +40,10 @@ _LIMB_OF_ALL = re.compile(
 _OWN_PART = re.compile(
     r"\byour (?:(?:left|right) )?(?:hand|arm|head|nose|ear|eye|chin|cheek|shoulder|elbow|belly|hair|back|chest|forehead|mouth|face|neck|brow)s?\b"
 )
+_ONE_OF_THEM = re.compile(
+    r"\b(?P<verb>blow|give|show|throw|do|take|make)(?: (?:me|us|him|her|them))? one(?= too| as well| now|[.,!?]|$)"
+)
+"""A noun that was said before with the same verb: "he used to blow me a kiss, so please blow me one"."""
 _ACT_ON_IT = re.compile(r"((?!do\b)\w+) (?:it|them)\b(?: (?:away|off)\b)?")
 """A part of the robot that a sentence names before a pronoun stands for it: "there is a fly on your nose, scratch it"."""
 
@@ -115,6 +119,9 @@ def _referring(bare: str, said: str) -> str:
     part = _OWN_PART.search(said.rpartition(bare)[0]) if bare else None
     if part is not None and (pronoun := _ACT_ON_IT.match(bare)):
         return f"{pronoun[1]} {part[0]}{bare[pronoun.end() :]}"
+    if one := _ONE_OF_THEM.search(bare):
+        named = re.search(rf"\b{one['verb']}(?:s|ing)?(?: (?:me|us|him|her|them|you))? (?P<noun>an? \w+)", before)
+        return bare if named is None else f"{bare[: one.end('verb')]} {named['noun']}{bare[one.end() :]}"
     act = re.search(
         r"\b(?:can not|can|could|cannot|how to|how you|whether you|if you|"
         r"(?:people|everybody|everyone|others|they|we|one)(?: (?:usually|always|often|all|mostly|normally|generally|would))+) ((?:never |ever )?\w+.*?)(?=,|\.|$)",

@@ -100,3 +100,19 @@ def test_manner(text: str, tempo: float, size: float, hold_s: float) -> None:
 def test_words_around_a_request(text: str, read_as: str, denied: tuple[str, ...]) -> None:
     reading = read(text)
     assert ("; ".join(reading.sentences), reading.denied) == (read_as, denied)
+
+
+@pytest.mark.parametrize(
+    ("sentence", "commands"),
+    [
+        ("Raise your, um, left arm.", ["raise your left arm"]),
+        ("First your left, then your right: raise your arms!", ["raise your left arm", "raise your right arm"]),
+        ("look to your left side, then to the right", ["look to your left side", "look to your right side"]),
+        ("my sister deserves a hug", ["a hug"]), ("the dog wants a walk", ["the dog wants a walk"]),
+        ("he used to blow me a kiss from the gate, so I'd love it if you would blow me one", ["blow a kiss"]),
+        ("my brother gave a bow, pick one up", ["my brother gave a bow, pick one up"]),
+        ("bring your palms together", ["bring your palms together"]), ("say hi, five times", ["say hi, five times"]),
+    ],
+)  # fmt: skip
+def test_words_that_the_sentence_said_before(sentence: str, commands: list[str]) -> None:
+    assert [c.text for step in read(sentence).steps for c in step] == commands
