@@ -14,7 +14,7 @@ from daemon.wire import events as ev
 from daemon.wire.requests import KeyPoseOf, Say, SceneOf, Story
 from mmm_core.inference.checkpoint import MODEL_FILE
 from tests.end_to_end.test_start_and_end import child_pid
-from tests.support.harness import RATE_HZ, plays_well, running_daemon
+from tests.support.harness import RATE_HZ, keeps_to_its_path, running_daemon
 from tests.support.robot_states import STAYS, bring_to, within
 from tests.support.shipped import loaded_once
 
@@ -44,7 +44,7 @@ def test_a_story_moves_with_its_first_part_and_skips_rejected_ones(run):
     with run.client() as robot:
         said = robot.story([("wave with your right hand", 1.6), "walk to the window", ("nod twice", 1.6), ("bow", 2.0)])
         done = said.done
-        assert done is not None and plays_well(done)
+        assert done is not None and keeps_to_its_path(done)
         seconds = 1.6 + 1.6 + 2.0 + 2 * 0.4  # two transitions
         assert done.frames == pytest.approx(seconds * RATE_HZ, abs=20)
         scenes = [e for e in said.events if isinstance(e, ev.Progress) and e.stage == "scene"]
@@ -64,7 +64,7 @@ def test_a_text_barges_into_a_story_and_a_stop_ends_one(run):
             pass
         time.sleep(1.0)
         said = other.say("nod", seconds=1.0)
-        assert said.done is not None and plays_well(said.done)
+        assert said.done is not None and keeps_to_its_path(said.done)
         rest = list(events)
         assert isinstance(rest[-1], ev.Cancelled) and rest[-1].by == f"say {said.id}"
         again = other.story(["wave", "bow"], loop=True, wait=False)
@@ -112,7 +112,7 @@ def test_a_text_goes_on_from_what_is_played(run):
         time.sleep(1.5)
         said = robot.say("clap your hands", seed=4, prefix_s=1.6)
         assert isinstance(list(events)[-1], ev.Cancelled)
-        assert said.done is not None and plays_well(said.done)
+        assert said.done is not None and keeps_to_its_path(said.done)
         with pytest.raises(ValueError, match="prefix_s"):
             robot.say("clap your hands", prefix_s=0.4, when="after")
 

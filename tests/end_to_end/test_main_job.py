@@ -15,7 +15,7 @@ from daemon.scheduling.command_queue import SHADOW_S
 from daemon.wire.events import Accepted, Ack, Cancelled, Done, Progress
 from daemon.wire.requests import Say
 from mmm_core.inference.checkpoint import MODEL_FILE
-from tests.support.harness import RATE_HZ, START_TIMEOUT_S, RunningDaemon, mmmd, plays_well, slow_reference
+from tests.support.harness import RATE_HZ, START_TIMEOUT_S, RunningDaemon, keeps_to_its_path, mmmd, slow_reference
 
 pytestmark = [
     pytest.mark.skipif(not MODEL_FILE.exists(), reason="no checkpoint in this checkout"),
@@ -56,13 +56,13 @@ def test_three_texts_one_of_them_during_a_motion(run):
     with run.client() as robot:
         first = robot.say("wave with your right hand")
         assert first.events[0].status == "accepted" and "wave" in first.events[0].understood
-        assert isinstance(first.done, Done) and plays_well(first.done)
+        assert isinstance(first.done, Done) and keeps_to_its_path(first.done)
         overtaken = robot.events_of(Say(id="overtaken", text="raise your left arm"))
         events = [next(overtaken) for _ in range(2)]
         assert [type(e) for e in events] == [Accepted, Progress]
         with run.client() as other:
             second = other.say("nod twice")
-        assert second.done is not None and plays_well(second.done)
+        assert second.done is not None and keeps_to_its_path(second.done)
         last = next(overtaken)
         assert isinstance(last, Cancelled) and last.by == f"say {second.id}"
 

@@ -18,7 +18,7 @@ from daemon.client import AsyncClient, CancelledByError, RefusedError
 from daemon.wire import events as ev
 from daemon.wire.codec import decode_event, encode
 from daemon.wire.requests import Release, Say
-from tests.support.harness import MMMD, plays_well
+from tests.support.harness import MMMD, keeps_to_its_path
 from tests.support.sizes import few_and_long
 from tests.support.streaming import PERIOD_S, fed, until_still, wave
 
@@ -36,7 +36,7 @@ def test_a_stream_moves_the_robot_and_is_released_with_its_figures(robot):
         assert now.stream.lease.holder == "sine" and now.stream.lease.state == "streaming"
         assert 1 < now.stream.lease.targets <= sent and now.stream.bad == {}  # the newest is taken of those that wait
     done = stream.news.end
-    assert isinstance(done, ev.Done) and plays_well(done) and done.peak_speed_share > 0.02
+    assert isinstance(done, ev.Done) and keeps_to_its_path(done) and done.peak_speed_share > 0.02
     assert 0 < done.first_motion_ms < 1000
     assert robot.status().stream.lease is None
 

@@ -239,9 +239,16 @@ def mmmd(*arguments: str, timeout_s: float = 30.0, **environment: str) -> subpro
 
 
 def plays_well(done: Done) -> bool:
-    """Whether a motion ran dry in less than a twentieth of its frames, and the gate changed none of them without that.
+    """Whether a motion ran dry in less than a twentieth of its frames, and the gate changed none of them without that."""
+    return 20 * done.underruns <= done.frames and keeps_to_its_path(done)
+
+
+def keeps_to_its_path(done: Done) -> bool:
+    """Whether the gate changed no frame of a motion, or some frames were late.
 
     Where the machine holds the front up, the bus process brakes, and then the gate leads the robot back to the moving path: after
-    a single late frame at half of a joint's top speed this takes 35 frames.
+    a single late frame at half of a joint's top speed this takes 35 frames. Beside a model that computes, or a client of the test
+    that is held up itself, the number of late frames tells of the machine; that none is late where nothing holds the front up is
+    tested in virtual time (tests/daemon/playback).
     """
-    return 20 * done.underruns <= done.frames and (done.underruns > 0 or done.gate_clipped_frames == 0)
+    return done.underruns > 0 or done.gate_clipped_frames == 0
