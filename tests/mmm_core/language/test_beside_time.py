@@ -21,9 +21,9 @@ from mmm_core.language.reading import read
          "bring your right hand to your mouth > cough with your right hand > lower your right hand"),
         ("before you wave at me give us a nod", "give us a nod > wave your right hand"),
         ("my teacher says robots can't dance but I bet you can, so show her", "dance with one arm after the other"),
-        ("we saw my grandmother, she is a bit shy, so maybe just nod at her", "nod at her"),
+        ("we saw my grandmother, she is a bit shy, so maybe just nod at her", "nod"),
         ("show them where the exit is, it's to your right", "point to the right"),
-        ("wave at them but make it quick", "wave at them (1.6 times as fast)"),
+        ("wave at them but make it quick", "wave (1.6 times as fast)"),
         ("throw your arms out as wide as they'll go", "throw your arms out (1.4 times as large)"),
         # and what these rules must leave alone
         ("hold your right arm up for a second", "raise your right arm up (held for 1 s)"),

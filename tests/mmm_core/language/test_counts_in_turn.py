@@ -29,7 +29,7 @@ from mmm_core.language.reading import Reading, read
         ("wave with each hand, one after the other", "wave with your right hand; wave with your left hand"),
         ("knock with each hand, one after the other, twice", "knock with alternating hands twice"),
         ("rub one ear, then the other", "rub your right ear; rub your left ear"),
-        ("wave at the door, then the window", "wave at the door; wave at the window"),
+        ("wave at the door, then the window", "wave; wave"),
         ("swing the left arm, the right arm, then both", "swing the left arm; swing the right arm; swing both arms"),
         ("rotate your wrists inwards, then outwards", "rotate your wrists inwards; rotate your wrists outwards"),
         ("salute with the right hand and, while holding it, look left", "salute with the right hand + look to the left"),

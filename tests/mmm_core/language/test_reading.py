@@ -29,7 +29,7 @@ def said(text: str) -> list[list[str]]:
     "text",
     [
         "turn your head right and back", "lean back", "do not move until I tell you", "a left wave", "lopen dansen", "mira arriba",
-        "wave to the second person", "shake up and down", "raise your left hand and wave", "draw a circle in the air",
+        "nod to the second person on your left", "shake up and down", "raise your left hand and wave", "draw a circle in the air",
     ],
 )  # fmt: skip
 def test_what_the_tables_of_orders_and_corrections_leave_alone(text: str) -> None:

@@ -85,7 +85,7 @@ def test_manner(text: str, tempo: float, size: float, hold_s: float) -> None:
     ("text", "read_as", "denied"),
     [
         ("She is leaving now so wave goodbye to her with your right hand", "wave goodbye with your right hand", ()),
-        ("My daughter likes it when you wave to her with your left hand, so would you?", "wave to her with your left hand", ()),
+        ("My daughter likes it when you wave to her with your left hand, so would you?", "wave with your left hand", ()),
         ("The doctor says I should see if you can tilt your head to the right without it hurting",
          "tilt your head to the right", ()),
         ("could you maybe, if it isn't too weird, put both of your hands on your head for me", "put both hands on your head", ()),
@@ -109,6 +109,7 @@ def test_words_around_a_request(text: str, read_as: str, denied: tuple[str, ...]
         ("First your left, then your right: raise your arms!", ["raise your left arm", "raise your right arm"]),
         ("look to your left side, then to the right", ["look to your left side", "look to your right side"]),
         ("my sister deserves a hug", ["a hug"]), ("the dog wants a walk", ["the dog wants a walk"]),
+        ("a head tilt to the left while shrugging", ["a head tilt to the left", "shrug"]),
         ("he used to blow me a kiss from the gate, so I'd love it if you would blow me one", ["blow a kiss"]),
         ("my brother gave a bow, pick one up", ["my brother gave a bow, pick one up"]),
         ("bring your palms together", ["bring your palms together"]), ("say hi, five times", ["say hi, five times"]),
@@ -116,3 +117,18 @@ def test_words_around_a_request(text: str, read_as: str, denied: tuple[str, ...]
 )  # fmt: skip
 def test_words_that_the_sentence_said_before(sentence: str, commands: list[str]) -> None:
     assert [c.text for step in read(sentence).steps for c in step] == commands
+
+
+@pytest.mark.parametrize(
+    ("sentence", "command"),
+    [
+        ("wave to the postman", "wave"), ("wave to the bus driver with your left hand", "wave with your left hand"),
+        ("bow politely to the camera", "bow politely"),
+        ("wave to them three times", "wave three times"), ("bow to the left", "bow to the left"),
+        ("nod to the beat", "nod to the beat"),
+        ("wave to the people on your left", "wave to the people on your left"), ("clap for joy", "clap for joy"),
+        ("raise your hand to your brow", "raise your hand to your brow"), ("nod at the floor", "nod at the floor"),
+    ],
+)  # fmt: skip
+def test_whom_a_gesture_is_meant_for(sentence: str, command: str) -> None:
+    assert [c.text for step in read(sentence).steps for c in step] == [command]

@@ -13,7 +13,7 @@ from mmm_core.language.reading import read
         # words begun again, put right, or heard for another
         ("fold you know fold your arms", "fold your arms"), ("raise your left arm i mean hand", "raise your left hand"),
         ("put your hand on your chest, sorry, head", "put your hand on your head"),
-        ("clap yeah and then bow", "clap; bow"), ("bow too the king", "bow to the king"),
+        ("clap yeah and then bow", "clap; bow"), ("bow too the king", "bow"),
         ("wave too the ceiling", "wave to the ceiling"), ("not on the door", "knock on the door"),
         ("make a fist and not not on the table", "make a fist; knock on the table"),
         ("pretend your on the phone", "pretend you are on the phone"),
@@ -22,7 +22,7 @@ from mmm_core.language.reading import read
         ("sorry to disturb you, I know you are busy, but could you possibly nod", "nod"),
         ("I wonder whether, when you are ready, you might clap", "clap"),
         ("perhaps you would care to wave", "wave"), ("you might want to bow", "bow"), ("wave, perhaps", "wave"),
-        ("should anybody ask, kindly nod", "nod"), ("bow to the guests. Go on, do it now.", "bow to the guests"),
+        ("should anybody ask, kindly nod", "nod"), ("bow to the guests. Go on, do it now.", "bow"),
         ("may I ask you please that you make the gesture of drinking a cup of tea", "drink a cup of tea"),
         ("salute with whichever hand you like, if that's ok with you", "salute"),
         ("there is a wasp on your nose; you might want to brush it away", "brush your nose"),
