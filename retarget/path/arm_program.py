@@ -42,6 +42,12 @@ class Frames:
     hessian: Array
     fall: Array
 
+    def of(self, change: Array) -> float:
+        """The cost of a change (N, n) of the control points, less that of none."""
+        e = change / 2
+        e[1:] += change[:-1] / 2
+        return float(((self.hessian @ e[..., None])[..., 0] / 2 - self.fall).ravel() @ e.ravel())
+
 
 @dataclass(frozen=True)
 class Rooms:

@@ -15,7 +15,7 @@ from retarget.path.avoidance import STRENGTHS, Avoidance, stretches
 from retarget.path.collision import Allowed, SelfContact
 from retarget.path.control_points import braking, controls_near, held, hits_of_frames, joined
 from retarget.path.least_distances import LeastDistances
-from retarget.path.limit_path import Objective, kept
+from retarget.path.limit_path import SETTLED_RAD, Objective, kept
 from retarget.path.limits import JointLimits
 from retarget.path.paths import JointState
 from retarget.path.refining import Refiner, Shown
@@ -28,6 +28,8 @@ _AWAY_FRAMES = 8
 """Frames for leaving a pose within the margin from which the path to the motion touches."""
 _STILL_RAD = 5e-4
 """Radians of movement in a frame below which settling ends: a third of a tick of 4,096 a turn."""
+_PUSHED_SETTLED_RAD = 0.02
+"""The limiter's `settled_rad` where poses were pushed out of contact: 0.1 rad moves a hand by more than such poses keep apart."""
 _AROUND_CUT = 3
 """Frames on both sides of the end of a block that change where braking from this end touches."""
 
@@ -102,7 +104,7 @@ class BlockPlanner:
         self, refiner: Refiner, path: Array, shown: Shown, n_frames: int, period: float, keep: int, settle: bool,
         allowed: Allowed | None, least: LeastDistances,
     ) -> Array | None:  # fmt: skip
-        """A path without contact and with smaller direction errors than the limiter's `path`; None if none was found."""
+        """A path without contact that follows the motion about as closely as the limiter's `path`; None if none was found."""
         stop = braking(path, period, self._limits)
         tail = max(len(stop), _SETTLE_FRAMES if settle else self._braking_frames(period))
         end = stop[-1:] if len(stop) else path[-1:]
@@ -176,14 +178,16 @@ class BlockPlanner:
 
         Contacts while braking after `keep` frames or at the end count too, but for a path that settles.
         """
-        points = self._path(eased, posed, pose_before, start, period, settle)
+        settled_rad = _PUSHED_SETTLED_RAD if np.any(eased != posed) else SETTLED_RAD
+        points = self._path(eased, posed, pose_before, start, period, settle, settled_rad)
         if settle:
             return points, *self._contact.along_near(points, allowed, least)
         return points, *self._cut_hits(points, period, keep, len(eased), allowed, least)
 
     def _path(
-        self, eased: Array, posed: Array, pose_before: Array, start: JointState, period: float, settle: bool
-    ) -> Array:
+        self, eased: Array, posed: Array, pose_before: Array, start: JointState, period: float, settle: bool,
+        settled_rad: float = SETTLED_RAD,
+    ) -> Array:  # fmt: skip
         """Control points of a path near `eased` (T, J) that keeps every limit.
 
         The differences of `eased` from `posed` have the largest weight. When settling, the last pose is held until reached.
@@ -198,5 +202,7 @@ class BlockPlanner:
         def objective_from(k: int) -> Objective:
             return self._objective(shown[k:], led[k:])
 
-        points = np.concatenate([[before], joined(wanted, before, position, period, self._limits, objective_from)])
+        points = np.concatenate(
+            [[before], joined(wanted, before, position, period, self._limits, objective_from, settled_rad)]
+        )
         return self._settled(points, len(points) - _SETTLE_FRAMES, period) if settle else points

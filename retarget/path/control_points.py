@@ -8,7 +8,7 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from retarget.path.limit_path import Objective, limit_path
+from retarget.path.limit_path import SETTLED_RAD, Objective, limit_path
 from retarget.path.limits import JointLimits, brake, limit_step, stopping_velocity_rad_s
 
 Array = NDArray[np.float64]
@@ -43,13 +43,13 @@ def braking(control: Array, period: float, limits: JointLimits) -> Array:
 
 def joined(
     wanted: Array, before: Array, position: Array, period: float, limits: JointLimits,
-    objective_from: Callable[[int], Objective],
+    objective_from: Callable[[int], Objective], settled_rad: float = SETTLED_RAD,
 ) -> Array:  # fmt: skip
     """(T + 1, J) control points from the second, `position`, on, near `wanted` (T, J).
 
-    `objective_from` gives the objective from a frame on. A joint that begins with just enough room to brake has its next control
-    points at or beyond the position limit, although its path stays inside; until there is room for whole steps the joint brakes as
-    hard as its path needs.
+    `objective_from` gives the objective from a frame on; `settled_rad` is that of `limit_path`. A joint that begins with just
+    enough room to brake has its next control points at or beyond the position limit, although its path stays inside; until there
+    is room for whole steps the joint brakes as hard as its path needs.
     """
     points = [before, position]
     for k in range(len(wanted)):
@@ -60,7 +60,7 @@ def joined(
         short = np.abs(velocity) - limits.acceleration_rad_s2 * period > room
         short |= toward * (points[-1] - end) > 0
         if not short.any():
-            rest = limit_path(wanted[k:], points[-1], velocity, limits, period, partial(objective_from, k))
+            rest = limit_path(wanted[k:], points[-1], velocity, limits, period, partial(objective_from, k), settled_rad)
             return np.concatenate([points[1:], rest])
         gap = np.maximum(toward * (end - (points[-1] + points[-2]) / 2), 1e-12)
         braking_rad_s2 = np.minimum(velocity**2 / (2 * gap), limits.acceleration_rad_s2)

@@ -26,7 +26,7 @@ _TAIL_WEIGHT = 1e-3
 _PULL = 1e-3
 _LINEARISED = 4
 """Largest number of linearisations: where the reference jumps, more than two improve the path."""
-_SETTLED_RAD = 0.1
+SETTLED_RAD = 0.1
 """Radians of the largest movement of a control point above which the objective is linearised again."""
 
 
@@ -76,11 +76,13 @@ def limit_path(
     limits: JointLimits,
     period_s: float,
     make_objective: Callable[[], Objective] | None = None,
+    settled_rad: float = SETTLED_RAD,
 ) -> Array:
     """(T, J) path near `reference_rad` (T, J) that keeps every limit, from the given position and velocity.
 
     Both are control points of splines. `make_objective` gives the objective of the frames half way between them and is called
-    only when a limit is passed; None weighs every joint alike.
+    only when a limit is passed; None weighs every joint alike. An arm whose last linearisation moved no control point by
+    `settled_rad` is not linearised again.
     """
     T, J = reference_rad.shape
     path = np.minimum(np.maximum(reference_rad, limits.position_min_rad), limits.position_max_rad)
@@ -100,7 +102,7 @@ def limit_path(
             follows = kept(part, position, velocity, limits, period_s)
         if not follows.all():
             near = reference_rad[k : k + n + _AHEAD_FRAMES]
-            _solve(objective, k, near, follows, part, position, velocity, limits, period_s)
+            _solve(objective, k, near, follows, part, position, velocity, limits, period_s, settled_rad)
             np.clip(part[:n], limits.position_min_rad, limits.position_max_rad, out=part[:n])
             part[:n] = _follow(part[:n], position, velocity, limits, period_s)
         before = path[k + n - 2] if n > 1 else position
@@ -120,6 +122,7 @@ def _solve(
     velocity: Array,
     limits: JointLimits,
     period_s: float,
+    settled_rad: float,
 ) -> None:
     """Optimise in place a path (n, J) from frame `first` on, for all groups with a joint that is not `kept`."""
     inside, settled = kept.copy(), kept
@@ -147,7 +150,7 @@ def _solve(
             if nearer_path(problem, points, target, position[joints], step, bounds, inside[joints]):
                 path[:, joints.ravel()] = points[:, : len(path)].transpose(1, 0, 2).reshape(len(path), -1)
                 inside[joints] = True
-        settled = kept | (np.abs(path - led).max(0) < _SETTLED_RAD)
+        settled = kept | (np.abs(path - led).max(0) < settled_rad)
         if settled.all():
             break
 

@@ -50,6 +50,14 @@ def test_a_slow_robot_comes_together_as_often(name: str, retargeters: dict[str, 
     assert max(closed_m) < 0.04 and min(open_m) > 0.07
 
 
+def test_every_clap_of_two_to_six_meets_on_a_slow_robot(retargeters: dict[str, Retargeter]) -> None:
+    for count in (2, 4, 5, 6):
+        motion = gesture("clap", count=count)
+        closed_m, _ = claps_m(retargeters["ffw_bg2"], motion, retargeters["ffw_bg2"].retarget(motion))
+        assert len(closed_m) == count
+        assert max(closed_m) < 0.025, closed_m
+
+
 def claps_m(retargeter: Retargeter, motion: Motion, path: JointPath) -> tuple[list[float], list[float]]:
     """How near the robot's hands come in each clap of the person, beyond the margin, and how far they part between two."""
     assert retargeter._hands is not None
@@ -74,6 +82,15 @@ def test_without_contacts_nothing_changes(retargeters: dict[str, Retargeter]) ->
     plain = Retargeter(load_robot("reference")).retarget(motion)
     np.testing.assert_array_equal(retargeters["reference"].retarget(motion).control_rad, plain.control_rad)
     assert plain.report.contacts == {}
+
+
+def test_a_path_out_of_contact_does_not_stray_from_the_motion() -> None:
+    """OP2's hands cannot meet; of the paths on which they do not touch, one with arms past each other is not taken."""
+    errors_deg = [
+        Retargeter(load_robot("op2"), keep_contacts=True).retarget(gesture("clap", count=n)).report.direction_mean_deg
+        for n in (3, 5)
+    ]
+    assert errors_deg[0] < 14 and errors_deg[1] < 20, errors_deg
 
 
 def test_a_contact_out_of_reach_is_not_gone_for() -> None:
