@@ -30,6 +30,10 @@ _STILL_RAD = 5e-4
 """Radians of movement in a frame below which settling ends: a third of a tick of 4,096 a turn."""
 _PUSHED_SETTLED_RAD = 0.02
 """The limiter's `settled_rad` where poses were pushed out of contact: 0.1 rad moves a hand by more than such poses keep apart."""
+_MOST_WORSE = 0.02
+"""Mean increase of a frame's cost, half its squared errors, from which on a refined path is compared with the limiter's. A path
+that began deep in a contact may lead far round it: paths of recordings cost 0.004 more at most, of claps that are kept 0.011, of
+missed ones 0.04 to 0.5."""
 _AROUND_CUT = 3
 """Frames on both sides of the end of a block that change where braking from this end touches."""
 
@@ -73,19 +77,22 @@ class BlockPlanner:
         allowed = self._contact.allowed_from(least.least_m[0])
         least = least.part(slice(1, None))
         touching = self._contact.touching(least)
+        around: Array | None = None
         if self._refiner and shown and touching.any():
             # The refined path replaces the limiter's, so contacts on the limiter's are not searched.
             eased = self._avoidance.push_a_little(posed, touching, least)
             path = self._path(eased, posed, before, begin, period, settle)
             better = self._refined(self._refiner, path, shown, len(posed), period, keep, settle, allowed, least)
             if better is not None:
-                return better, stretches(touching)
+                around, worse = better
+                if worse < _MOST_WORSE:
+                    return around, stretches(touching)
         eased, interventions = self._avoidance.push_out(posed, begin.position_rad, least)
         path, hit, least = self._limited(eased, posed, before, begin, period, keep, settle, allowed, least)
         if self._refiner and shown and not interventions and hit.any():
             better = self._refined(self._refiner, path, shown, len(posed), period, keep, settle, allowed, least)
-            if better is not None:
-                return better, stretches(hit)
+            if better is not None and better[1] < _MOST_WORSE:
+                return better[0], stretches(hit)
         for strength in STRENGTHS:
             if not hit.any():
                 break
@@ -98,13 +105,20 @@ class BlockPlanner:
             path, hit, least = self._limited(eased, posed, before, begin, period, keep, settle, allowed, least)
         if hit.any():
             path = self._stop_before_contact(path, hit, period, allowed)
+        if around is not None and self._distance(around, posed) < self._distance(path, posed):
+            return around, stretches(touching)
         return path, interventions
+
+    def _distance(self, control: Array, posed: Array) -> float:
+        """Sum of the squared differences of the arms' angles on a path from poses (T, J)."""
+        frames = (control[1:-1] + control[2:])[: len(posed)] / 2
+        return float(((frames - posed[: len(frames)])[:, self._arms] ** 2).sum())
 
     def _refined(
         self, refiner: Refiner, path: Array, shown: Shown, n_frames: int, period: float, keep: int, settle: bool,
         allowed: Allowed | None, least: LeastDistances,
-    ) -> Array | None:  # fmt: skip
-        """A path without contact that follows the motion about as closely as the limiter's `path`; None if none was found."""
+    ) -> tuple[Array, float] | None:  # fmt: skip
+        """A path without contact near the limiter's `path`, and the increase of a frame's cost; None if none was found."""
         stop = braking(path, period, self._limits)
         tail = max(len(stop), _SETTLE_FRAMES if settle else self._braking_frames(period))
         end = stop[-1:] if len(stop) else path[-1:]
@@ -126,11 +140,12 @@ class BlockPlanner:
             hit[n - 1] |= of_path[n:].any()
             return hit
 
-        control = refiner.refine(start, shown, n_frames, period, touching, least)
-        if control is None:
+        found = refiner.refine(start, shown, n_frames, period, touching, least)
+        if found is None:
             return None
+        control, worse = found
         inside = kept(control[2:], control[1], (control[1] - control[0]) / period, self._limits, period)
-        return cut(control) if inside[self._arms].all() else None
+        return (cut(control), worse) if inside[self._arms].all() else None
 
     def _braking_frames(self, period: float) -> int:
         """Frames in which every joint comes to rest from any speed, and one more."""

@@ -38,9 +38,6 @@ _BETWEEN_M = (1 - KEPT) * 0.010
 """Metres of the margin that poses between frames may lack."""
 _STIFFNESS = 4e4
 """Weight of the squared metres by which a pair is too near: a millimetre costs as much as 11 degrees in one frame."""
-_MOST_WORSE = 0.02
-"""Mean increase of a frame's cost, half its squared errors, up to which a path free of contact is taken. A path that began deep
-in a contact may lead round it: paths of recordings cost 0.004 more at most, of kept claps 0.011, of missed ones 0.04 to 0.5."""
 _STEADY = Steady(1e-3, 1e-2)
 """Weights of squared steps and of their changes: between frames a path must not zigzag unseen."""
 _LEAST = 1e-4
@@ -71,8 +68,8 @@ class Refiner:
         period_s: float,
         touching: Touching,
         least: LeastDistances,
-    ) -> Array | None:
-        """Control points without contact that follow the motion about as closely as the given ones; None if none were found.
+    ) -> tuple[Array, float] | None:
+        """Control points without contact and the mean increase of a frame's cost by them; None if none were found.
 
         Args:
             control_rad: (N, J) initial control points; the first two, and joints outside the arms, do not change. At the end
@@ -92,7 +89,7 @@ class Refiner:
                 lacks = near.pose[near.room_m < np.where(near.pose < N, 0.0, -_BETWEEN_M)]
                 hit = np.isin(np.arange(N), lacks % N) if len(lacks) else touching(control, least, Seen(control, near))
                 if not hit.any():
-                    return control if worse < _MOST_WORSE * n_frames else None
+                    return control, worse / n_frames
                 more_m[hit] += _MORE_M
                 more_m[:-1][hit[1:] & ~hit[:-1]] += _MORE_M
                 more_m[1:][hit[:-1] & ~hit[1:]] += _MORE_M

@@ -99,3 +99,9 @@ def test_a_contact_out_of_reach_is_not_gone_for() -> None:
     motion = gesture("pray")
     plain, kept = (Retargeter(robot, keep_contacts=k).retarget(motion).report for k in (False, True))
     assert kept.direction_mean_deg < plain.direction_mean_deg + 1
+
+
+def test_hands_behind_the_head_are_led_round_it(retargeters: dict[str, Retargeter]) -> None:
+    """The refined path costs more than the limiter's would without contact, and is still the nearer one."""
+    report = retargeters["poppy_torso"].retarget(gesture("behind_head")).report
+    assert report.direction_mean_deg < 9
