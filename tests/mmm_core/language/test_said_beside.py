@@ -122,7 +122,9 @@ def test_words_that_the_sentence_said_before(sentence: str, commands: list[str])
 @pytest.mark.parametrize(
     ("sentence", "command"),
     [
-        ("wave to the postman", "wave"), ("wave to the bus driver with your left hand", "wave with your left hand"),
+        ("twist your trunk to the right by only a few degrees", "twist your trunk to the right"), ("wave to the postman", "wave"),
+        ("turn your head ninety degrees", "turn your head ninety degrees"), ("Lookup at the painted vault.", "look up"),
+        ("wave to the bus driver with your left hand", "wave with your left hand"),
         ("bow politely to the camera", "bow politely"),
         ("wave to them three times", "wave three times"), ("bow to the left", "bow to the left"),
         ("nod to the beat", "nod to the beat"),
