@@ -152,7 +152,7 @@ class SelfContact(PairSlopes):
     def _known(
         self, q_rad: Array, control_rad: Array, margin_m: Array, least: LeastDistances | None, seen: Seen | None
     ) -> SplineDistances:
-        """What is known at the borders (B, J) of the segments of a spline, and in their middles."""
+        """Gives the known bounds of distances at the borders (B, J) and in the middles of a spline's segments."""
         if seen is None or least is None:
             placed = self._placed(q_rad, with_joints=False)
             least_m = self._nearest_m(placed, margin_m) if least is None else least.at(q_rad, -1)

@@ -35,7 +35,7 @@ class Seen:
 
 @dataclass(frozen=True)
 class SplineDistances:
-    """Poses of a spline with B borders of segments, and what is known of the P distances in them.
+    """Poses of a spline with B borders of segments, and lower bounds of the P distances in each pose.
 
     Attributes:
         placed: the shapes in R poses.
