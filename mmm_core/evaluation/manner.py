@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 
 from mmm_core.corpus.heldout import Command
 from mmm_core.corpus.plain_commands import plain_phrases
 from mmm_core.language.inflection import times
 from mmm_core.motion.motion import Motion
+from mmm_core.motion.performing import is_cyclic
 from mmm_core.motion.posture_features import posture_features
-from mmm_core.motion.repetitions import body_path
+from mmm_core.motion.repetitions import body_path, strokes_of
 from mmm_core.recognition import checks
 
 LEAST_CHANGE = 1.15
@@ -25,7 +28,7 @@ def judge_manner(command: Command, motion: Motion, plain: Motion) -> dict[str, b
         faster = _pace(motion, command) / max(_pace(plain, command), 1e-6)
         verdict["tempo"] = faster >= LEAST_CHANGE if command.tempo == "fast" else faster <= 1 / LEAST_CHANGE
     if command.size:
-        larger = _reach(motion, command) / max(_reach(plain, command), 1e-6)
+        larger = _size_ratio(motion, plain, command)
         verdict["size"] = larger >= LEAST_CHANGE if command.size == "large" else larger <= 1 / LEAST_CHANGE
     return verdict
 
@@ -53,13 +56,41 @@ def _pace(motion: Motion, command: Command) -> float:
     return float(moving.mean()) * motion.fps / max(float(np.linalg.norm(path - path[0], axis=-1).max()), 1e-6)
 
 
-def _reach(motion: Motion, command: Command) -> float:
-    """Size of a motion: the range of its strokes or, without strokes, the greatest distance of the limb from its first pose."""
+def _size_ratio(motion: Motion, plain: Motion, command: Command) -> float:
+    """How many times larger a motion is than the plain one, by the first measure that both have."""
+    measures = (_stroke_range, _cycle_range_m, _signal_range, _reach)
+    sizes = ((measure(motion, command), measure(plain, command)) for measure in measures)
+    return next((a / b for a, b in sizes if a > 0 and b > 0), 1.0)
+
+
+def _stroke_range(motion: Motion, command: Command) -> float:
+    """Range of the family's own signal from peak to valley between its strokes; 0 with fewer than two strokes."""
+    falls = [
+        float(signal[[a, b]].mean() - signal[a : b + 1].min())
+        for signal, least in _signals(motion, command)
+        for a, b in pairwise(checks.peaks(signal, least))
+    ]
+    return float(np.median(falls)) if falls else 0.0
+
+
+def _cycle_range_m(motion: Motion, _command: Command) -> float:
+    """Range of one cycle of a motion that repeats, without what leads to it, such as raising the arms; else 0."""
+    found = strokes_of(motion)
+    return found.range_m if found is not None and is_cyclic(found) else 0.0
+
+
+def _signal_range(motion: Motion, command: Command) -> float:
+    """Range of the family's own signal; 0 where it has none."""
+    return max((float(np.ptp(signal)) for signal, _ in _signals(motion, command) if len(signal)), default=0.0)
+
+
+def _signals(motion: Motion, command: Command) -> list[tuple[np.ndarray, float]]:
     s = posture_features(motion.joints_m, motion.head_quat_wxyz, motion.forearm_twist_rad)
-    signals = checks._stroke_signals(s, command.family)  # noqa: SLF001
-    ranges = [float(np.ptp(signal)) for signal, _ in signals if len(signal)]
-    if ranges and max(ranges) > 0:
-        return max(ranges)
+    return checks._stroke_signals(s, command.family)  # noqa: SLF001
+
+
+def _reach(motion: Motion, command: Command) -> float:
+    """Greatest distance of the limb from its first pose."""
     path = _limb_path(motion, command)
     return float(np.linalg.norm(path - path[0], axis=-1).max())
 

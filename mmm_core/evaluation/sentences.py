@@ -13,7 +13,6 @@ import numpy as np
 from mmm_core.corpus.heldout import Command, Probe, Sentence
 from mmm_core.evaluation.manner import judge_manner, plain_sentence
 from mmm_core.evaluation.probes import MIN_PART, judge
-from mmm_core.evaluation.robot_capability import showable as robot_showable
 from mmm_core.motion.motion import Motion
 from mmm_core.motion.posture_features import PostureFeatures, part, posture_features
 from mmm_core.motion.skeleton import standing_joints
@@ -38,7 +37,7 @@ def judge_sentence(sentence: Sentence, shown: PostureFeatures) -> dict[str, bool
         if len(step) > 1:
             verdict["at_once"] = seen_at_once(step, shown)
         for command in step if len(step) == 1 else ():
-            verdict = judge(_probe(command), shown, with_pose=True)
+            verdict = judge(as_probe(command), shown, with_pose=True)
     if sentence.denied or sentence.kind == "denial":
         kept = not any(shows(shown, family) for family in sentence.denied)
         verdict["denial"] = kept and all(ok for key, ok in verdict.items() if key != "count_exact")
@@ -80,7 +79,7 @@ def evaluate_sentences(
         sentences: the sentences to judge.
         seeds: seeds of each sentence.
         progress: called with the number of motions done.
-        showable: expectations that are met when the corpus itself performs a sentence, by text, from `showable_expectations`;
+        showable: expectations that are met when the corpus itself performs a sentence, by text, from `sentence_capability`;
             the shares of these alone are given as "of_showable".
     """
     met: dict[str, list[bool]] = defaultdict(list)
@@ -120,15 +119,6 @@ def evaluate_sentences(
     }
 
 
-def showable_expectations(
-    sentences: Sequence[Sentence], on_robot: Callable[[Motion], Motion] = lambda motion: motion
-) -> dict[str, frozenset[str]]:
-    """Expectations that are met when the corpus performs a sentence of one command, on a person or on a robot, by text."""
-    single = [(s.text, s.commands[0][0]) for s in sentences if len(s.commands) == 1 and len(s.commands[0]) == 1]
-    found = robot_showable(on_robot, probes=[replace(_probe(c), text=text) for text, c in single])
-    return {text: keys | {"denial", "tempo", "size"} for text, keys in found.items()}
-
-
 def _shares(met: Mapping[str, Sequence[bool]]) -> dict[str, float]:
     return {key: round(float(np.mean(values)), 4) for key, values in sorted(met.items())}
 
@@ -158,7 +148,8 @@ def _all(verdict: Mapping[str, bool]) -> bool:
     return all(ok for key, ok in verdict.items() if key != "count_exact")
 
 
-def _probe(c: Command) -> Probe:
+def as_probe(c: Command) -> Probe:
+    """A command as a probe without a text."""
     return Probe("", c.family, c.limb, c.side, c.count, c.direction, c.hold_s)
 
 

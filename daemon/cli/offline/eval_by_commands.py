@@ -147,7 +147,8 @@ def measure_words(
 
     from daemon.bench.report import context
     from mmm_core.corpus.heldout import read_sentences
-    from mmm_core.evaluation.sentences import evaluate_sentences, showable_expectations
+    from mmm_core.evaluation.sentence_capability import showable_expectations
+    from mmm_core.evaluation.sentences import evaluate_sentences
     from mmm_core.generate.engine import Engine
     from retarget.pipeline import Retargeter
     from retarget.robot.loading import load_robot

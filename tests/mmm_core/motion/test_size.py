@@ -11,7 +11,8 @@ from tests.support.shipped import shipped_engine
 COMMANDS = (
     ("wave your left hand", "wave", "arm", "left"), ("clap", "clap", "arm", ""), ("shrug your shoulders", "shrug", "arm", ""),
     ("stretch your left arm forward", "arm_forward", "arm", "left"), ("bow", "bow", "trunk", ""), ("nod", "nod", "head", ""),
-    ("turn your upper body to the left", "twist", "trunk", ""),
+    ("turn your upper body to the left", "twist", "trunk", ""), ("flap your arms", "flap", "arm", ""),
+    ("conduct the choir", "conduct", "arm", ""),
 )  # fmt: skip
 
 
@@ -26,3 +27,10 @@ def test_a_word_of_size_goes_the_right_way(size: str, factor: float) -> None:
         if judge_manner(Command(family, limb, side, size=size), shown, plain) != {"size": True}:
             wrong.append(text)
     assert len(wrong) <= 1, wrong
+
+
+def test_a_motion_that_is_no_larger_or_smaller_fails() -> None:
+    for text, family, limb, side in COMMANDS[:3]:
+        plain = shipped_engine().generate(text, seed=0).motion
+        for size in ("large", "small"):
+            assert judge_manner(Command(family, limb, side, size=size), plain, plain) == {"size": False}, text
