@@ -1,8 +1,10 @@
-"""Sentences with marks around their commands: what the sentence tagger learns from.
+"""Sentences with marks around their commands or their manner: what the sentence tagger learns from.
 
 A sentence is written with all its words, and brackets around those that matter: `[1 ...]` a command of the first step, `[2a ...]` and
 `[2b ...]` commands of the second step at the same time, `[- ...]` an act that is denied, `[* ...]` words for all commands, `[x ...]` words that
 the speaker takes back. Words outside brackets are not needed: politeness, audiences, reasons, words of order.
+
+Other sentences have braces around the words that say tempo or size: `{slow: ...}`, `{fast: ...}`, `{small: ...}`, `{large: ...}`.
 """
 
 from __future__ import annotations
@@ -12,20 +14,40 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from mmm_core.errors import TrainingDataError
-from mmm_core.language.tagged_words import AGAIN, BEFORE, DENIED, FOR_ALL, INSIDE, OUTSIDE, THEN, WITH, words_of
+from mmm_core.language.tagged_words import (
+    AGAIN,
+    BEFORE,
+    DENIED,
+    FOR_ALL,
+    INSIDE,
+    NO_MANNER,
+    OUTSIDE,
+    THEN,
+    WITH,
+    words_of,
+)  # fmt: skip
 
-MARKED_SENTENCES = Path(__file__).parent / "prompts" / "marked_sentences.txt"
-"""The sentences that ship, one a line; lines that begin with # are comments."""
+_PROMPTS = Path(__file__).parent / "prompts"
+MARKED_SENTENCES, MANNER_SENTENCES = _PROMPTS / "marked_sentences.txt", _PROMPTS / "manner_sentences.txt"
+"""The sentences that ship, with marked commands and with marked manner, one a line; lines that begin with # are comments."""
 _MARK = re.compile(r"\[(?P<label>\d[a-z]?|[-*xX]) (?P<words>[^\[\]]*)\]")
+_MANNER_MARK = re.compile(r"\{(?P<manner>slow|fast|small|large): *(?P<words>[^{}]*)\}")
 _BESIDE = {"-": DENIED, "*": FOR_ALL, "x": OUTSIDE}
 
 
 @dataclass(frozen=True)
 class TaggedSentence:
-    """The words of a sentence, punctuation marks included, with the tag of each (`mmm_core.language.tagged_words.TAGS`)."""
+    """The words of a sentence, punctuation marks included, with what was marked.
+
+    Attributes:
+        words: the words.
+        tags: of each word, one of `mmm_core.language.tagged_words.TAGS`; empty where commands were not marked.
+        manners: of each word, one of `mmm_core.language.tagged_words.MANNERS`; empty where manner was not marked.
+    """
 
     words: tuple[str, ...]
-    tags: tuple[str, ...]
+    tags: tuple[str, ...] = ()
+    manners: tuple[str, ...] = ()
 
 
 def read_marked(line: str, path: Path = MARKED_SENTENCES) -> tuple[str, list[str]]:
@@ -64,22 +86,66 @@ def read_marked(line: str, path: Path = MARKED_SENTENCES) -> tuple[str, list[str
     return sentence, tags
 
 
+def read_manner(line: str, path: Path = MANNER_SENTENCES) -> tuple[str, list[str]]:
+    """A sentence with marked manner as plain text, and the manner of each of its words.
+
+    Args:
+        line: the marked sentence.
+        path: its file, which an error names.
+
+    Raises:
+        TrainingDataError: a brace is open, nested or without a manner.
+
+    >>> read_manner("nod {slow: at a crawl}")
+    ('nod at a crawl', ['none', 'slow', 'slow', 'slow'])
+    """
+    sentence, marks, at = "", [], 0
+    for mark in _MANNER_MARK.finditer(line):
+        sentence += line[at : mark.start()]
+        marks.append((len(sentence), len(sentence) + len(mark["words"]), mark["manner"]))
+        sentence, at = sentence + mark["words"], mark.end()
+    sentence += line[at:]
+    if "{" in sentence or "}" in sentence:
+        raise TrainingDataError(
+            path, "", f"a brace that is no mark in {line!r}", "{slow: ...}, {fast: ...}, {small: ...} or {large: ...}"
+        )
+    manners = [
+        next((manner for start, end, manner in marks if start <= a and b <= end), NO_MANNER)
+        for a, b in words_of(sentence)
+    ]
+    return sentence, manners
+
+
 def load_marked_sentences(path: Path = MARKED_SENTENCES) -> list[TaggedSentence]:
-    """The sentences of a file.
+    """The sentences of a file with marked commands.
 
     Raises:
         TrainingDataError: the file is missing, or a line is not well marked.
     """
+    read = [read_marked(line, path) for line in _lines(path)]
+    return [TaggedSentence(_words(sentence), tags=tuple(tags)) for sentence, tags in read]
+
+
+def load_manner_sentences(path: Path = MANNER_SENTENCES) -> list[TaggedSentence]:
+    """The sentences of a file with marked manner.
+
+    Raises:
+        TrainingDataError: the file is missing, or a line is not well marked.
+    """
+    read = [read_manner(line, path) for line in _lines(path)]
+    return [TaggedSentence(_words(sentence), manners=tuple(manners)) for sentence, manners in read]
+
+
+def _words(sentence: str) -> tuple[str, ...]:
+    return tuple(sentence[a:b] for a, b in words_of(sentence))
+
+
+def _lines(path: Path) -> list[str]:
     try:
         lines = path.read_text("utf-8").splitlines()
     except OSError as error:
         raise TrainingDataError(path, "", f"cannot be read ({error})", "marked sentences, one a line") from error
-    found: list[TaggedSentence] = []
-    for line in lines:
-        if line.strip() and not line.startswith("#"):
-            sentence, tags = read_marked(line.strip(), path)
-            found.append(TaggedSentence(tuple(sentence[a:b] for a, b in words_of(sentence)), tuple(tags)))
-    return found
+    return [line.strip() for line in lines if line.strip() and not line.startswith("#")]
 
 
 def _relation(label: str, seen: list[str]) -> str:

@@ -13,8 +13,9 @@ from itertools import chain, pairwise
 from mmm_core.language.clause_patterns import BEGINS_WITH_A_VERB, LIMB_FIRST
 from mmm_core.language.commands import MOST_AT_ONCE, MOST_STEPS, PlainCommand, Reading
 from mmm_core.language.completed_at_once import beside_each_other
+from mmm_core.language.denial import denied_side, with_other_side
 from mmm_core.language.ellipsis import OTHER, completed
-from mmm_core.language.known_phrases import is_known_phrase
+from mmm_core.language.known_phrases import is_known_phrase, key_of
 from mmm_core.language.limbs import is_gesture_verb, limbs_of
 from mmm_core.language.one_arm import of_one_arm
 from mmm_core.language.reading import command_of, read
@@ -56,11 +57,12 @@ _BESIDE = re.compile(
 """Number of strokes and hand of a command."""
 _LONGEST_SURE = 9
 """Words of a command that the rules are sure of, at most."""
+_COMPARES = re.compile(r"\b(?:as if|as though|like)\b")
 _ALL = re.compile(r"^(?:all(?: of (?:it|them|that))?|both|everything|each)\b ?")
 
 
 def is_sure(reading: Reading) -> bool:
-    """Whether the rules read it rightly in all likelihood.
+    """Whether the rules divided it rightly in all likelihood.
 
     Each command is a phrase of the corpus, or is short, begins as a command does, and has no word that joins commands.
     """
@@ -70,6 +72,24 @@ def is_sure(reading: Reading) -> bool:
     if len(commands) == 1 and _IS_CAPTION.match(commands[0]):
         return True
     return all(is_known_phrase(_BESIDE.sub("", command)) or _is_simple(command) for command in commands)
+
+
+def needs_tags(reading: Reading) -> bool:
+    """Whether the rules are not sure, or the sentence has words that the corpus does not know and that may say a manner.
+
+    Such words are in a command that is no phrase of the corpus, or in a comparison that was left out as not needed.
+    """
+    commands = [_BESIDE.sub("", command.text.lower()) for step in reading.steps for command in step]
+    if len(commands) == 1 and _IS_CAPTION.match(commands[0]):
+        return False
+    known = all(key_of(command) is None or is_known_phrase(command) for command in commands)
+    compares = _COMPARES.search(reading.text) is not None and not any(map(_COMPARES.search, commands))
+    return compares or not (known and is_sure(reading))
+
+
+def names_acts(reading: Reading) -> bool:
+    """Whether each command begins with a verb or names a limb, or is a phrase of the corpus."""
+    return all(_stands_alone(command.text.lower()) for step in reading.steps for command in step)
 
 
 def _is_simple(command: str) -> bool:
@@ -94,7 +114,7 @@ def read_with_tags(by_rules: Reading, tags: Sequence[str]) -> Reading:
     by_tags = _read_marked(by_rules.text, marked)
     if by_rules.denied and not by_tags.denied:  # what is denied must not be done
         return by_rules
-    if not all(_stands_alone(command.text) for step in by_tags.steps for command in step):
+    if not names_acts(by_tags):
         return by_rules
     if _shape(by_rules) == _shape(by_tags) and not (by_rules.denied and is_sure(by_tags)):
         return by_rules
@@ -149,7 +169,8 @@ def _read_marked(text: str, marked: MarkedCommands) -> Reading:
             commands.append(before)
         steps.append(beside_each_other(commands) if len(commands) > 1 else commands)
     beside = f" {for_all}" if for_all and not verb_of_all else ""
-    with_arms = iter(of_one_arm([command + beside for command in chain.from_iterable(steps)]))
+    side = next(filter(None, (denied_side(_plain(what)) for what in marked.denied)), "")
+    with_arms = iter(of_one_arm([with_other_side(c + beside, side) for c in chain.from_iterable(steps)]))
     return Reading(text, tuple(tuple(_one_command(next(with_arms)) for _ in step) for step in steps), marked.denied)
 
 

@@ -3,6 +3,8 @@
 A tagger gives each word one of `TAGS`: outside every command; said for all commands; denied; inside the command before it; or
 first word of a command, with the relation to the command before it in the sentence (done next, at the same time, before it, or
 the same command, taken up again). "before you [clap], [raise your arms]" has "then" at "clap" and "before" at "raise".
+
+It also gives each word one of `MANNERS`: the tempo or the size that the word helps to ask for.
 """
 
 from __future__ import annotations
@@ -17,6 +19,7 @@ from numpy.typing import NDArray
 OUTSIDE, FOR_ALL, DENIED, INSIDE, THEN, WITH, BEFORE, AGAIN = TAGS = (
     "outside", "for_all", "denied", "inside", "then", "with", "before", "again",
 )  # fmt: skip
+NO_MANNER, SLOW, FAST, SMALL, LARGE = MANNERS = ("none", "slow", "fast", "small", "large")
 BEGINS = frozenset({THEN, WITH, BEFORE, AGAIN})
 """Tags of the first word of a command."""
 _WORD = re.compile(r"[A-Za-z0-9_'\u2019-]+|[^\sA-Za-z0-9_'\u2019-]")

@@ -1,6 +1,6 @@
-"""Tags the words of a sentence: which belong to a command, which are denied, and how commands follow each other.
+"""Tags the words of a sentence: which belong to a command, how commands follow each other, and which say tempo or size.
 
-The lower layers are the text encoder's own; the tagger adds copies of its next layers, trained further, and a linear layer. A
+The lower layers are the text encoder's own; the tagger adds copies of its next layers, trained further, and two linear layers. A
 word is tagged by the state of its first word piece.
 """
 
@@ -22,11 +22,13 @@ class TaggerConfig:
 
     Attributes:
         n_tags: number of tags.
+        n_manners: number of manners.
         n_shared: layers of the text encoder that the tagger uses as they are.
         n_own: layers of its own above them.
     """
 
     n_tags: int = 8
+    n_manners: int = 5
     n_shared: int = 3
     n_own: int = 3
 
@@ -39,9 +41,12 @@ class SentenceTagger(nn.Module):
         self.config = config
         self.layers = nn.ModuleList(WordLayer(text) for _ in range(config.n_own))
         self.tag = nn.Linear(text.width, config.n_tags)
+        self.manner = nn.Linear(text.width, config.n_manners)
 
-    def forward(self, states: Tensor, mask: Tensor, first_pieces: Tensor, dropout: float = 0.0) -> Tensor:
-        """Scores (B, N, tags) of words.
+    def forward(
+        self, states: Tensor, mask: Tensor, first_pieces: Tensor, dropout: float = 0.0
+    ) -> tuple[Tensor, Tensor]:
+        """Scores (B, N, tags) and (B, N, manners) of words.
 
         Args:
             states: (B, W, D) states of word pieces after the encoder's shared layers.
@@ -53,8 +58,7 @@ class SentenceTagger(nn.Module):
         for layer in self.layers:
             x = F.dropout(layer(x, mask[:, None, None, :]), dropout, self.training)
         words = x.gather(1, first_pieces[..., None].expand(-1, -1, x.shape[-1]))
-        scores: Tensor = self.tag(words)
-        return scores
+        return self.tag(words), self.manner(words)
 
 
 @dataclass(frozen=True)
@@ -91,8 +95,9 @@ def word_states(encoder: MiniLm, n_shared: int, sentences: Sequence[Sequence[str
 
 
 @torch.inference_mode()
-def log_probability(tagger: SentenceTagger, encoder: MiniLm, words: Sequence[str]) -> Tensor:
-    """(N, tags) log-probability of each tag for each word of one sentence."""
+def log_probability(tagger: SentenceTagger, encoder: MiniLm, words: Sequence[str]) -> tuple[Tensor, Tensor]:
+    """(N, tags) and (N, manners) log-probabilities for each word of one sentence."""
     (found,) = word_states(encoder, tagger.config.n_shared, [words])
     mask = torch.ones(1, len(found.states), dtype=torch.bool)
-    return F.log_softmax(tagger(found.states[None], mask, found.first_pieces[None])[0].float(), -1)
+    tags, manners = tagger(found.states[None], mask, found.first_pieces[None])
+    return F.log_softmax(tags[0].float(), -1), F.log_softmax(manners[0].float(), -1)

@@ -65,7 +65,7 @@ def train(
 
     Args:
         stage: all of them and a checkpoint, or one; scope builds what refusals rest on again for the run's checkpoint;
-            tagger trains what divides sentences into commands, from the marked sentences that ship (25 minutes, no recipe);
+            tagger trains what divides sentences into commands, from the marked sentences that ship (50 minutes, no recipe);
             average writes the mean of --models; ablation trains variants of a recipe and prints what the probes and real
             captions say of each.
         config: name of a recipe that ships, or a TOML file (docs/training.md); compact, or ablation for that stage.

@@ -54,12 +54,12 @@ def understand(
 
 
 def _read(text: str) -> Reading:
-    """The reading of a text; the tagger, and PyTorch with it, is loaded where the rules are not sure."""
+    """The reading of a text; the tagger, and PyTorch with it, is loaded where a command is no known phrase."""
     from mmm_core.language.reading import read
-    from mmm_core.language.tagged_reading import is_sure
+    from mmm_core.language.tagged_reading import needs_tags
 
     by_rules = read(text)
-    return by_rules if is_sure(by_rules) else _reader().read(text)
+    return _reader().read(text) if needs_tags(by_rules) else by_rules
 
 
 @cache

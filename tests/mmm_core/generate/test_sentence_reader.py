@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from mmm_core.corpus.heldout import read_sentences
 from mmm_core.generate.sentence_reader import SentenceReader
 from mmm_core.language.commands import Reading
 from mmm_core.language.reading import read
@@ -34,6 +35,32 @@ def test_it_divides_more_sentences_as_meant_than_the_rules_alone(reader: Sentenc
     assert by_reader >= 102
 
 
+def _manners(reading: Reading) -> set[str]:
+    """The tempos and sizes that a reading has, as sentences of the development set name them."""
+    found: set[str] = set()
+    for manner in (command.manner for step in reading.steps for command in step):
+        found |= {"slow" if manner.tempo < 1 else "fast"} if manner.tempo != 1 else set()
+        found |= {"small" if manner.size < 1 else "large"} if manner.size != 1 else set()
+    return found
+
+
+def test_it_finds_more_tempos_and_sizes_than_the_rules_alone(reader: SentenceReader) -> None:
+    given = [s for s in read_sentences("words_dev") if s.kind == "manner" and len(s.commands) == 1]
+    meant = [{c.tempo, c.size} - {""} for c in (s.commands[0][0] for s in given)]
+    by_rules = sum(_manners(read(s.text)) == m for s, m in zip(given, meant, strict=True))
+    by_reader = sum(_manners(reader.read(s.text)) == m for s, m in zip(given, meant, strict=True))
+    assert len(given) > 100
+    assert by_reader >= by_rules + 25
+    assert by_reader >= 0.85 * len(given)
+
+
+def test_words_of_the_act_are_not_taken_for_its_manner(reader: SentenceReader) -> None:
+    given = [s for s in read_sentences("words_dev") if not any(c.tempo or c.size for step in s.commands for c in step)]
+    wrong = [s.text for s in given if _manners(reader.read(s.text))]
+    assert len(given) > 300
+    assert len(wrong) <= 0.03 * len(given), wrong
+
+
 @pytest.mark.parametrize(
     ("sentence", "steps"),
     [
@@ -43,6 +70,7 @@ def test_it_divides_more_sentences_as_meant_than_the_rules_alone(reader: Sentenc
          [["swing your right arm forwards", "swing your left arm backwards"]]),
         ("Blow a kiss, but put your hand on your heart beforehand", [["put your hand on your heart"], ["blow a kiss"]]),
         ("wave", [["wave"]]),
+        ("Draw that bow, no haste at all.", [["draw that bow"]]),
     ],
 )  # fmt: skip
 def test_a_sentence_is_divided_and_completed(reader: SentenceReader, sentence: str, steps: list[list[str]]) -> None:

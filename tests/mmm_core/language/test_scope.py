@@ -101,7 +101,6 @@ def test_the_score_parts_the_development_prompts(engine: Engine, every: int) -> 
     found = scope_figures(engine, inside, outside)
     assert found["auroc"] >= 0.97
     assert found["false_refusals"] <= 0.04 and found["false_acceptances"] <= 0.12
-    assert found["decision_processor_ms"]["p50"] < 30
     assert found["n"] == len(inside) + len(out_of(outside))
 
 

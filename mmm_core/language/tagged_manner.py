@@ -1,0 +1,118 @@
+"""Tempo and size in words that the rules do not know: a tagger finds them, and a plain adverb takes their place.
+
+"Bow as if you waded through treacle, then nod" becomes "Bow slowly, then nod", which the rules read.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import groupby, pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mmm_core.language.reading import read
+from mmm_core.language.tagged_words import FAST, LARGE, MANNERS, SLOW, SMALL, words_of
+
+_ADVERBS = {SLOW: "slowly", FAST: "quickly", SMALL: "slightly", LARGE: "hugely"}
+_LEAST_PROBABILITY = 0.7
+"""Mean probability, over the words of a phrase, below which a manner is not believed."""
+_ENDS_A_SENTENCE = re.compile(r"[.!?;:](?=\s|$)")
+_MARKS_AT_START = re.compile(r"^[\s,.;:!?\u2026\u2013\u2014-]+")
+_MARKS_AT_END = re.compile(r"[\s,.;:!?\u2026\u2013\u2014-]+$")
+_FEW_WORDS = 2
+"""Words that may stand beside a manner in a sentence of its own: "och, easy now"."""
+
+
+@dataclass(frozen=True)
+class MannerPhrase:
+    """Words that ask for one tempo or size.
+
+    Attributes:
+        start: first character of the phrase in its sentence.
+        end: end of the phrase.
+        manner: one of `MANNERS`, but "none".
+    """
+
+    start: int
+    end: int
+    manner: str
+
+
+def manner_phrases(sentence: str, log_probability: NDArray[np.float32]) -> list[MannerPhrase]:
+    """The phrases of a sentence that ask for a tempo or a size, in order.
+
+    Neighbouring words that are likelier of some manner than of none are one phrase; its manner has the greatest mean probability.
+
+    Args:
+        sentence: the sentence.
+        log_probability: (N, 5) log-probability of each of `MANNERS` for each of its N `words_of`.
+    """
+    spans, probability = words_of(sentence), np.exp(log_probability)
+    found: list[MannerPhrase] = []
+    for some, group in groupby(range(len(spans)), key=lambda i: bool(probability[i].argmax())):
+        words = list(group)
+        if not some:
+            continue
+        mean = probability[words].mean(0)
+        best = int(mean[1:].argmax()) + 1
+        if mean[best] >= _LEAST_PROBABILITY:
+            found.append(MannerPhrase(spans[words[0]][0], spans[words[-1]][1], MANNERS[best]))
+    return found
+
+
+def with_plain_manner(text: str, phrases: Sequence[MannerPhrase]) -> str:
+    """A text with an adverb in place of each phrase of manner that the rules do not understand.
+
+    >>> with_plain_manner("Nod at the speed of a snail.", [MannerPhrase(4, 27, "slow")])
+    'Nod slowly.'
+    """
+    unknown = [phrase for phrase in phrases if not _is_understood(text, phrase)]
+    if not unknown:
+        return text
+    said = ""
+    for start, end in _sentences(text):
+        inside = [phrase for phrase in phrases if start <= phrase.start < end]
+        if said and inside and _n_words(text, start, end, inside) <= _FEW_WORDS:  # "Stir the tea. Och, easy now."
+            adverbs = dict.fromkeys(_ADVERBS[phrase.manner] for phrase in inside)
+            said = f"{_MARKS_AT_END.sub('', said)} {' '.join(adverbs)}."
+            continue
+        sentence = text[start:end]
+        for phrase in reversed([phrase for phrase in inside if phrase in unknown]):
+            sentence = _replaced(sentence, phrase.start - start, phrase.end - start, _ADVERBS[phrase.manner])
+        said += sentence
+    return said
+
+
+def _is_understood(text: str, phrase: MannerPhrase) -> bool:
+    """Whether the rules read a tempo or a size, of whatever kind, in the phrase: more commands have one with it than without."""
+    return _n_scaled(text, phrase.manner) > _n_scaled(text[: phrase.start] + text[phrase.end :], phrase.manner)
+
+
+def _n_scaled(text: str, manner: str) -> int:
+    manners = [command.manner for step in read(text).steps for command in step]
+    return sum((m.tempo if manner in (SLOW, FAST) else m.size) != 1 for m in manners)
+
+
+def _sentences(text: str) -> list[tuple[int, int]]:
+    """Start and end of each sentence of a text, with its final mark and without a space between."""
+    edges = [0, *(found.end() for found in _ENDS_A_SENTENCE.finditer(text)), len(text)]
+    return [(a, b) for a, b in pairwise(edges) if text[a:b].strip()]
+
+
+def _n_words(text: str, start: int, end: int, phrases: Sequence[MannerPhrase]) -> int:
+    """Number of words between two characters that belong to no phrase."""
+    return sum(
+        text[start + a].isalnum() and not any(p.start <= start + a < p.end for p in phrases)
+        for a, _ in words_of(text[start:end])
+    )
+
+
+def _replaced(sentence: str, start: int, end: int, adverb: str) -> str:
+    before, after = sentence[:start], sentence[end:]
+    if not before.strip():
+        return f"{before}{adverb} {_MARKS_AT_START.sub('', after)}".rstrip()
+    space = " " if after[:1].isalnum() else ""
+    return f"{_MARKS_AT_END.sub('', before)} {adverb}{space}{after}"
