@@ -13,7 +13,8 @@ from functools import partial
 from mmm_core.language.alternatives import opposite
 from mmm_core.language.clause_patterns import SPEAKS_OF_AN_ACT
 from mmm_core.language.ellipsis import OTHER
-from mmm_core.language.limbs import is_gesture_verb
+from mmm_core.language.known_phrases import is_known_phrase
+from mmm_core.language.limbs import SOME_ARM, is_gesture_verb, limbs_of
 from mmm_core.language.requests import everyday
 from mmm_core.language.word_tables import any_of
 
@@ -26,6 +27,9 @@ _BETWEEN = re.compile(
 _INLINE = re.compile(rf"\s*,?\s*\b(?P<not>{_any('inline')})\s+(?P<what>[^,;:.!]+)")
 _GERUND_FIRST = re.compile(
     r"^\W*(?:instead of|rather than|without) (?P<what>(?:\w+ing)(?: (?:your|the|at|to|with) \w+(?: \w+)?)?|(?:a|an) \w+),? (?=\w)"
+)
+_ANYTHING_BUT = re.compile(
+    r"\b(?:anything|everything|whatever(?: \w+){0,2}) (?:but|except(?: for)?|other than|besides|apart from)\b"
 )
 _IN_PLACE_OF = re.compile(r"^\W*(?:instead of|rather than|as opposed to|in place of)\b|^not .+, but\b")
 """Words of contrast, after which even what is no act is not to be done: "wave instead of just standing there"."""
@@ -78,7 +82,7 @@ _NOT_USING = re.compile(
 )
 _GO_ON = re.compile(
     r"^(\W*(?:skip|forget|leave out|never mind|instead of|rather than) [^,]+?),? and (?:go (?:straight|right|directly) (?:to|on to|for)|just|do|give me|instead) "
-    r"|^(\W*(?:skip|forget|leave out|never mind) (?:the|your|that) \w+),? and (?!(?:the|an?|your|no|any|not|all)\b)"
+    r"|^(\W*(?:skip|forget|leave out|never mind|ditch|scrap|bin|lose|nix|axe|forgo) (?:the|your|that) \w+),? and (?!(?:the|an?|your|no|any|not|all)\b)"
 )
 _STOP_AND = re.compile(
     r"^(\W*(?:please )?(?:stop|quit) \w+ing\b[^,]*?),? and (?!\w+ing\b|(?:left|right|up|down|back|forth|forwards?|out|round)\b|(?:your |the |both |left |right )*(?:hands?|arms?|head|fingers?|fists?|shoulders?)$)(?=\w+ \w)"
@@ -88,6 +92,8 @@ _SAYS_NOT_TO = re.compile(
     rf"^\W*(?:{_any('before')} )*(?:please )?(?:(?:do not|never) (?!(?:mind|rush|hurry|forget|stop|hesitate|worry)\b)\w|(?:stop|no|quit|avoid) \w+ing\b)"
 )
 """A clause that asks for nothing, whatever it names: "do not warble on the recorder"."""
+_STATES = re.compile(r"^(?!to )\S.*?(?:\b(?:is|are|was|were|am|has|have|had|does|did)\b|'s\b|'re\b)")
+"""A finite verb behind a subject."""
 _HAS_SIDE = re.compile(r"\b(?:left|right|both)\b")
 
 
@@ -136,14 +142,14 @@ def without_denial(text: str) -> Denial:  # noqa: PLR0912  one branch for each f
             continue
         found = None if _NO_DENIAL.match(clause) else _DENIES.match(clause)
         if found and (what := found["what"].strip(" ,")):
-            if only := _SIDE_ONLY.match(what):
-                side = only["side"]
+            if only := denied_side(what):
+                side = only
                 denied.append(what)
                 continue
             if _WAVED_ASIDE.match(what) or _DIRECTION_ONLY.match(what):
                 continue
             if _is_target(what, clause, rest) or _is_act(what) or _IN_PLACE_OF.match(clause):
-                anything |= bool(re.search(r"\b(?:anything|everything|whatever)\b", clause))
+                anything |= _ANYTHING_BUT.search(clause) is not None
                 denied.append(re.sub(r"\s+(?:is|are) (?:fine|ok|okay|good).*$", "", what))
                 continue
             if _SAYS_NOT_TO.match(clause) and any(_is_act(p) and not _DENIES.match(p) for p in parts if p != part):
@@ -152,10 +158,10 @@ def without_denial(text: str) -> Denial:  # noqa: PLR0912  one branch for each f
         inline = None if _NO_DENIAL.match(clause) else _INLINE.search(clause)
         if inline and inline.start() > 0:
             what = inline["what"].strip()
-            only = _SIDE_ONLY.match(what)
+            only = denied_side(what)
             is_denied = only or _DIRECTION_ONLY.match(what) or _is_act(what) or _ALWAYS_DENIES.match(inline["not"])
             if is_denied or (inline["not"].startswith(("but ", "and ")) and _PLACE.match(what)):
-                side = only["side"] if only else side
+                side = only or side
                 denied.append(what)
                 clause = (clause[: inline.start()] + clause[inline.end() :]).strip()
         if not re.fullmatch(
@@ -163,13 +169,28 @@ def without_denial(text: str) -> Denial:  # noqa: PLR0912  one branch for each f
             clause,
         ):
             rest.append(clause)
-    rest = [clause for i, clause in enumerate(rest) if not (denied and _is_said_again(clause, rest[:i]))]
+    rest = [
+        clause
+        for i, clause in enumerate(rest)
+        if not (denied and (_is_said_again(clause, rest[:i]) or _is_statement(clause)))
+    ]
     if not denied:
         return Denial(text if not rest or leaves else _as_it_was(text, rest))
     joined = ", ".join(rest)
-    if side and joined and not _HAS_SIDE.search(joined):
-        joined = _with_side(joined, OTHER[side])
-    return Denial(joined, tuple(denied), anything)
+    return Denial(with_other_side(joined, side), tuple(denied), anything)
+
+
+def denied_side(what: str) -> str:
+    """The side that a denial of nothing but a side names ("the left hand", "use your right one"); "" for any other."""
+    only = _SIDE_ONLY.match(what)
+    return only["side"] if only else ""
+
+
+def with_other_side(command: str, denied: str) -> str:
+    """A command that takes an arm and names no side, completed with the hand that is not denied ("left", "right" or "")."""
+    if not denied or not command or _HAS_SIDE.search(command) or limbs_of(command) - SOME_ARM:
+        return command
+    return _with_side(command, OTHER[denied])
 
 
 def _without_opening_denials(text: str, denied: list[str]) -> str:
@@ -195,6 +216,11 @@ def _is_said_again(clause: str, before: list[str]) -> bool:
     return any(set(clause.split()) <= set(earlier.split()) for earlier in before)
 
 
+def _is_statement(clause: str) -> bool:
+    """Whether a clause beside a denial is its reason: "don't clap yet, the teacher is still talking"."""
+    return _STATES.search(clause) is not None and not _is_act(clause)
+
+
 def _is_target(what: str, clause: str, rest: list[str]) -> bool:
     """Whether a denial is about where to, not about an act: "point, but not at me"; "look at me, not at the floor"."""
     if not rest or not _PLACE.match(what):
@@ -208,7 +234,7 @@ def _note(denied: list[str], what: str) -> str:
 
 
 def _is_act(what: str) -> bool:
-    named = SPEAKS_OF_AN_ACT.search(what) or _ACTS_ALSO.search(what) or everyday(what)
+    named = SPEAKS_OF_AN_ACT.search(what) or _ACTS_ALSO.search(what) or everyday(what) or is_known_phrase(what)
     return bool(named or is_gesture_verb(what.partition(" ")[0]))
 
 

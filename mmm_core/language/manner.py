@@ -119,14 +119,13 @@ def _factor(clause: str, table: str, most: float) -> tuple[str, float]:
     rules = _rules(table)
     for number in rules.possible(clause):
         pattern, worth = rules.rules[number]
-        found = pattern.search(clause)
-        if found is None or not _is_manner(clause, found):
-            continue
-        strength = float(worth) ** (STRONGER if _STRONG.search(found[0]) else 1.0)
-        if abs(strength - 1) > abs(factor - 1) or factor == 1.0:
-            factor = strength
-        after = clause[found.end() :]
-        if not _WAVE_NEXT.match(after) or factor < 1 or table == "tempo":  # "a big wave" is a gesture of its own
+        while (found := pattern.search(clause)) is not None and _is_manner(clause, found):
+            strength = float(worth) ** (STRONGER if _STRONG.search(found[0]) else 1.0)
+            if abs(strength - 1) > abs(factor - 1) or factor == 1.0:
+                factor = strength
+            after = clause[found.end() :]
+            if _WAVE_NEXT.match(after) and factor >= 1 and table != "tempo":  # "a big wave" is a gesture of its own
+                break
             clause = " ".join(f"{clause[: found.start()]} {after}".split())
     return clause, min(most, max(1 / most, factor))
 

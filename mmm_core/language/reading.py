@@ -34,6 +34,8 @@ _DO_IT = re.compile(
     r"(?:go ahead and )?(?:do (?:it|that|so|this)|prove it|show (?:me|us|him|her|them|everybody|it))"
     r"(?P<how> with (?:your|the) (?:left|right) (?:hand|arm))?(?: too| as well| also| now)*\W*"
 )
+_NOT_AT_ALL = re.compile(r"(?:so |but |please |just )*do not(?: (?:do|try) (?:it|that|this|so))?(?: please)?\W*")
+"""What is left of "i know you would like to clap, but please don't"."""
 _LIMB_OF_ALL = re.compile(
     r"(?P<limb>(?:your |the )?(?:(?:left|right|both) )?(?:arms?|hands?|head|body)): (?P<parts>.+)$"
 )
@@ -70,6 +72,8 @@ def read(text: str, *, by_rules_alone: bool = False) -> Reading:
     if known := everyday(bare) or greeting(bare):
         return _known(text, known)
     bare, first_hand = _hand_first(restated(corrected(_referring(with_marks(bare), held))))
+    if _NOT_AT_ALL.fullmatch(bare):
+        return Reading(text, (), ("that",))
     denial = without_denial(rewritten(bare))
     if denial.denied and not denial.rest and not denial.anything:
         return Reading(text, (), _shown(denial.denied))

@@ -60,6 +60,8 @@ _NAMES_AN_ACT = re.compile(
 """Words after which a request of its own follows."""
 _END, _MARKS = re.compile(r"[\s,.!?;:]+$"), re.compile(r"\s*[,.!?;:]+\s*")
 _WORD = re.compile(r"[a-z]{2,}")
+_COURTESY = re.compile(r"(?:many )?(?:thanks?|thank you|cheers|ta|please|much obliged)(?: \w+){0,3}")
+"""Words after a request that are no request themselves: "a nod will do, thank you"."""
 _JOINED_GERUND = re.compile(
     r"(\b(?:and|then|or) )((?:clapp|nodd|wav|bow|shrugg|salut|point|look|lean|shak|rais|lower|turn|touch)ing)\b"
 )
@@ -106,7 +108,7 @@ def _without(rest: str, table: RuleTable) -> str:
 
 def _kept(before: str, after: str) -> str:
     after = after.strip(" ,")
-    return after if _WORD.search(after) else before
+    return after if _WORD.search(after) and not _COURTESY.fullmatch(_END.sub("", after)) else before
 
 
 def _gerund_request(rest: str) -> str:
