@@ -6,6 +6,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from mmm_core.corpus.families import FAMILIES
 from mmm_core.corpus.heldout import Command
 from mmm_core.corpus.plain_commands import plain_phrases
 from mmm_core.language.inflection import times
@@ -36,7 +37,8 @@ def judge_manner(command: Command, motion: Motion, plain: Motion) -> dict[str, b
 def plain_sentence(command: Command) -> str:
     """The corpus's first sentence for a command without its manner."""
     row = {"": ("any", "none", "both"), "both": ("both",), "alternating": ("alternating",)}.get(command.side, ("one",))
-    said = plain_phrases(command.family, command.direction)
+    ways = (command.direction, *FAMILIES[command.family].directions)  # a command may leave open where to
+    said = next(phrases for way in ways if (phrases := plain_phrases(command.family, way)))
     fitting = [p for r, p in said if r in row and "{N}" not in p and (command.count is None or "{n}" in p)]
     phrase = (fitting or [p for _, p in said if "{N}" not in p])[0]
     often = "" if command.count is None else times(command.count, np.random.default_rng(3))

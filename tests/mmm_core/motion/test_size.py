@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import pytest
 
+from mmm_core.corpus.families import FAMILIES
 from mmm_core.corpus.heldout import Command
-from mmm_core.evaluation.manner import judge_manner
+from mmm_core.evaluation.manner import judge_manner, plain_sentence
 from tests.support.shipped import shipped_engine
 
 COMMANDS = (
@@ -34,3 +35,11 @@ def test_a_motion_that_is_no_larger_or_smaller_fails() -> None:
         plain = shipped_engine().generate(text, seed=0).motion
         for size in ("large", "small"):
             assert judge_manner(Command(family, limb, side, size=size), plain, plain) == {"size": False}, text
+
+
+def test_every_family_has_a_plain_sentence_with_and_without_a_direction() -> None:
+    for name, family in FAMILIES.items():
+        for way in ("", *family.directions):
+            for side in ("", *family.sides):
+                said = plain_sentence(Command(name, family.limb, side, direction=way, size="small"))
+                assert said and not set("{}|()") & set(said), (name, way, side)
