@@ -22,6 +22,8 @@ _LEAST_PROBABILITY = 0.7
 _ENDS_A_SENTENCE = re.compile(r"[.!?;:](?=\s|$)")
 _MARKS_AT_START = re.compile(r"^[\s,.;:!?\u2026\u2013\u2014-]+")
 _MARKS_AT_END = re.compile(r"[\s,.;:!?\u2026\u2013\u2014-]+$")
+_COUNTS = re.compile(r"\bx ?\d|\d ?x\b|\b(?:once|twice|thrice|times)\b", re.IGNORECASE)
+"""A number of strokes, which is no manner."""
 _FEW_WORDS = 2
 """Words that may stand beside a manner in a sentence of its own: "och, easy now"."""
 
@@ -45,6 +47,7 @@ def manner_phrases(sentence: str, log_probability: NDArray[np.float32]) -> list[
     """The phrases of a sentence that ask for a tempo or a size, in order.
 
     Neighbouring words that are likelier of some manner than of none are one phrase; its manner has the greatest mean probability.
+    Words with a number of strokes are no phrase of manner.
 
     Args:
         sentence: the sentence.
@@ -58,8 +61,9 @@ def manner_phrases(sentence: str, log_probability: NDArray[np.float32]) -> list[
             continue
         mean = probability[words].mean(0)
         best = int(mean[1:].argmax()) + 1
-        if mean[best] >= _LEAST_PROBABILITY:
-            found.append(MannerPhrase(spans[words[0]][0], spans[words[-1]][1], MANNERS[best]))
+        start, end = spans[words[0]][0], spans[words[-1]][1]
+        if mean[best] >= _LEAST_PROBABILITY and not _COUNTS.search(sentence[start:end]):
+            found.append(MannerPhrase(start, end, MANNERS[best]))
     return found
 
 

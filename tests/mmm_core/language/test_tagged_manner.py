@@ -39,7 +39,7 @@ def _plain(marked: str) -> str:
         ("Nod. {fast: Super fast}!", "Nod quickly."),
         ("Nod {slow: slowly}", "Nod slowly"),
         ("Nod {slow: very slowly}, then bow {slow: at the pace of a glacier}", "Nod very slowly, then bow slowly"),
-        ("wave at the tiny people", "wave at the tiny people"),
+        ("wave at the tiny people", "wave at the tiny people"), ("jumping jacks {fast: x6 lets go}", "jumping jacks x6 lets go"),
     ],
 )  # fmt: skip
 def test_a_plain_adverb_takes_the_place_of_words_that_the_rules_do_not_know(marked: str, plain: str) -> None:
