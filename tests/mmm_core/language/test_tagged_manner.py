@@ -42,7 +42,7 @@ def _plain(marked: str) -> str:
         ("wave at the tiny people", "wave at the tiny people"), ("jumping jacks {fast: x6 lets go}", "jumping jacks x6 lets go"),
     ],
 )  # fmt: skip
-def test_a_plain_adverb_takes_the_place_of_words_that_the_rules_do_not_know(marked: str, plain: str) -> None:
+def test_an_adverb_takes_the_place_of_unknown_words_of_manner(marked: str, plain: str) -> None:
     assert _plain(marked) == plain
 
 
