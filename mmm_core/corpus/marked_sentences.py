@@ -25,7 +25,7 @@ from mmm_core.language.tagged_words import (
     THEN,
     WITH,
     words_of,
-)  # fmt: skip
+)
 
 _PROMPTS = Path(__file__).parent / "prompts"
 MARKED_SENTENCES, MANNER_SENTENCES = _PROMPTS / "marked_sentences.txt", _PROMPTS / "manner_sentences.txt"

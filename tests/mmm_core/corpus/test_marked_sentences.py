@@ -16,7 +16,7 @@ from mmm_core.corpus.marked_sentences import (
     load_marked_sentences,
     read_manner,
     read_marked,
-)  # fmt: skip
+)
 from mmm_core.errors import TrainingDataError
 from mmm_core.language.tagged_words import marked_commands
 
