@@ -31,7 +31,7 @@ _PROMPTS = Path(__file__).parent / "prompts"
 MARKED_SENTENCES, MANNER_SENTENCES = _PROMPTS / "marked_sentences.txt", _PROMPTS / "manner_sentences.txt"
 """The sentences that ship, with marked commands and with marked manner, one a line; lines that begin with # are comments."""
 _MARK = re.compile(r"\[(?P<label>\d[a-z]?|[-*xX]) (?P<words>[^\[\]]*)\]")
-_MANNER_MARK = re.compile(r"\{(?P<manner>slow|fast|small|large): *(?P<words>[^{}]*)\}")
+_MANNER_MARK = re.compile(r"\{(?P<label>slow|fast|small|large): *(?P<words>[^{}]*)\}")
 _BESIDE = {"-": DENIED, "*": FOR_ALL, "x": OUTSIDE}
 
 
@@ -63,12 +63,7 @@ def read_marked(line: str, path: Path = MARKED_SENTENCES) -> tuple[str, list[str
     >>> read_marked("before you [2 clap], [1 raise your arms]")
     ('before you clap, raise your arms', ['outside', 'outside', 'then', 'outside', 'before', 'inside', 'inside'])
     """
-    sentence, marks, at = "", [], 0
-    for mark in _MARK.finditer(line):
-        sentence += line[at : mark.start()]
-        marks.append((len(sentence), len(sentence) + len(mark["words"]), mark["label"].lower()))
-        sentence, at = sentence + mark["words"], mark.end()
-    sentence += line[at:]
+    sentence, marks = _without_marks(line, _MARK)
     if "[" in sentence or "]" in sentence:
         raise TrainingDataError(
             path, "", f"a bracket that is no mark in {line!r}", "[1 ...], [2a ...], [- ...], [* ...] or [x ...]"
@@ -99,12 +94,7 @@ def read_manner(line: str, path: Path = MANNER_SENTENCES) -> tuple[str, list[str
     >>> read_manner("nod {slow: at a crawl}")
     ('nod at a crawl', ['none', 'slow', 'slow', 'slow'])
     """
-    sentence, marks, at = "", [], 0
-    for mark in _MANNER_MARK.finditer(line):
-        sentence += line[at : mark.start()]
-        marks.append((len(sentence), len(sentence) + len(mark["words"]), mark["manner"]))
-        sentence, at = sentence + mark["words"], mark.end()
-    sentence += line[at:]
+    sentence, marks = _without_marks(line, _MANNER_MARK)
     if "{" in sentence or "}" in sentence:
         raise TrainingDataError(
             path, "", f"a brace that is no mark in {line!r}", "{slow: ...}, {fast: ...}, {small: ...} or {large: ...}"
@@ -114,6 +104,17 @@ def read_manner(line: str, path: Path = MANNER_SENTENCES) -> tuple[str, list[str
         for a, b in words_of(sentence)
     ]
     return sentence, manners
+
+
+def _without_marks(line: str, pattern: re.Pattern[str]) -> tuple[str, list[tuple[int, int, str]]]:
+    """A line without its marks; first character, end and label of the words of each mark."""
+    sentence, at = "", 0
+    marks: list[tuple[int, int, str]] = []
+    for mark in pattern.finditer(line):
+        sentence += line[at : mark.start()]
+        marks.append((len(sentence), len(sentence) + len(mark["words"]), mark["label"].lower()))
+        sentence, at = sentence + mark["words"], mark.end()
+    return sentence + line[at:], marks
 
 
 def load_marked_sentences(path: Path = MARKED_SENTENCES) -> list[TaggedSentence]:

@@ -44,6 +44,6 @@ def showable_expectations(
 
 
 def _expected(command: Command) -> frozenset[str]:
-    """What must be seen of a command in a sentence of several."""
+    """The expectations of a command that a body must meet to show a whole sentence with it."""
     given = {"side": command.side, "direction": command.direction}
     return frozenset({"limb", "pose", *(key for key, value in given.items() if value)})

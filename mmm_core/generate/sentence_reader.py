@@ -61,7 +61,7 @@ class SentenceReader:
             return by_rules
         tags, manners = self._tagged(words)
         plain = with_plain_manner(words, manner_phrases(words, manners))
-        in_plain = read(plain)
+        in_plain = read(plain) if plain != words else without_emoji
         loses_an_act = names_acts(without_emoji) and not names_acts(in_plain)
         if plain == words or loses_an_act:
             return by_rules if is_sure(without_emoji) else replace(read_with_tags(without_emoji, tags), text=text)

@@ -35,7 +35,7 @@ _DO_IT = re.compile(
     r"(?P<how> with (?:your|the) (?:left|right) (?:hand|arm))?(?: too| as well| also| now)*\W*"
 )
 _NOT_AT_ALL = re.compile(r"(?:so |but |please |just )*do not(?: (?:do|try) (?:it|that|this|so))?(?: please)?\W*")
-"""What is left of "i know you would like to clap, but please don't"."""
+"""A request that denies an act named before it: "i know you would like to clap, but please don't"."""
 _LIMB_OF_ALL = re.compile(
     r"(?P<limb>(?:your |the )?(?:(?:left|right|both) )?(?:arms?|hands?|head|body)): (?P<parts>.+)$"
 )

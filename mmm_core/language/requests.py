@@ -60,7 +60,9 @@ _NAMES_AN_ACT = re.compile(
 """Words after which a request of its own follows."""
 _END, _MARKS = re.compile(r"[\s,.!?;:]+$"), re.compile(r"\s*[,.!?;:]+\s*")
 _WORD = re.compile(r"[a-z]{2,}")
-_COURTESY = re.compile(r"(?:many )?(?:thanks?|thank you|cheers|ta|please|much obliged)(?: \w+){0,3}")
+_COURTESY = re.compile(
+    r"(?:(?:many )?thanks|thank you|cheers|ta|please|much obliged)(?: (?:you|very|so|ever|much|kindly|indeed|a|lot|all|then|love|dear|sir))*"
+)
 """Words after a request that are no request themselves: "a nod will do, thank you"."""
 _JOINED_GERUND = re.compile(
     r"(\b(?:and|then|or) )((?:clapp|nodd|wav|bow|shrugg|salut|point|look|lean|shak|rais|lower|turn|touch)ing)\b"

@@ -1,4 +1,4 @@
-"""What a body can show of a sentence: a robot that cannot bow shows no bow in turn and none at once either."""
+"""Expectations of sentences that a body can meet: a robot that cannot bow meets no order that contains a bow."""
 
 from __future__ import annotations
 

@@ -50,7 +50,8 @@ def said(text: str) -> str:
         # and what looks like it
         ("no rush, wave", "wave (0.62 times as fast)"), ("don't rush, wave", "wave (0.62 times as fast)"),
         ("lose the hat and wave", "lose the hat, wave"), ("keep off the grass", "keep off the grass"),
-        ("a nod will do, thank you", "a nod"),
+        ("keep on waving", "keep on waving"), ("leave off waving", " | not: waving"),
+        ("a nod will do, thank you", "a nod"), ("my hands are full, please wave", "wave"),
         ("do not shoot", "do not shoot"), ("tell me not to worry", "tell me not to worry"),
         ("never say never", "never say never"),
     ],
