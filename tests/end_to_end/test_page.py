@@ -222,9 +222,10 @@ def test_a_frozen_and_a_dead_daemon_are_told_apart_from_a_live_one(page: Page) -
 
 @pytest.mark.long
 def test_a_recorded_run_is_scrubbed_through(page: Page) -> None:
-    """The run of the tests before, whose daemon was killed: a cut-off log is shown as far as it goes."""
+    """The daemon of the run was killed: a log that was cut off is shown as far as it goes."""
     (port,) = free_ports(1)
-    log, browser = browser_log(page), page.browser
+    browser = page.browser
+    log = a_killed_run(browser, page.daemon.folder / "killed.mcap")
     with (page.daemon.folder / "recorded").open("wb") as out:
         served = subprocess.Popen(
             [*MMMD, "view", log, "--http", f"127.0.0.1:{port}"], stdout=out, stderr=out, start_new_session=True
@@ -236,7 +237,7 @@ def test_a_recorded_run_is_scrubbed_through(page: Page) -> None:
         assert browser.text("#kind") == "RECORDED"
         assert browser.js("getComputedStyle(document.querySelector('#halts')).display") == "none"
         poses = browser.js(
-            "[0, 0.3, 0.6].map((share) => { const at = document.querySelector('#at'); at.value = share * at.max;"
+            "[...Array(50).keys()].map((i) => { const at = document.querySelector('#at'); at.value = i / 50 * at.max;"
             " at.dispatchEvent(new Event('input')); return [...mmmd.run.frame().q]; })"
         )
         assert np.ptp(poses, axis=0).max() > 0.1
@@ -248,6 +249,20 @@ def test_a_recorded_run_is_scrubbed_through(page: Page) -> None:
         served.wait(10)
 
 
-def browser_log(page: Page) -> str:
-    """The log that the daemon said it records into."""
-    return str(page.browser.js("mmmd.state.recording"))
+def a_killed_run(browser: Browser, log: Path) -> str:
+    """Record a robot that waves, kill its daemon in the middle of it, and give the log's path."""
+    daemon = RunningDaemon("--log", str(log))
+    try:
+        daemon.until_ready()
+        with daemon.armed() as robot:
+            before = robot.status()
+            robot.gesture("wave_right", loop=True, wait=False)
+            browser.wait(
+                lambda: np.ptp([robot.status().present_rad, before.present_rad], axis=0).max() > 0.5, "the arm", SOON_S
+            )
+            n_bytes = Path(before.recording).stat().st_size
+            browser.wait(lambda: Path(before.recording).stat().st_size > n_bytes, "that the log holds it", SOON_S)
+        daemon.process.kill()
+    finally:
+        daemon.close()
+    return before.recording
