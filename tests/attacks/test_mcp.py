@@ -56,7 +56,8 @@ def told(answer: dict) -> str:
 def test_no_line_keeps_a_language_model_from_its_estop(running):
     """An id of 5,000 digits ended the server; a byte that is not UTF-8 ended its reader: the e-stop after it was never read."""
     talk = b"".join(line + b"\n" for line in [*HOSTILE.values(), ESTOP])
-    result = subprocess.run([*MMMD, "mcp", *running.at], input=talk, capture_output=True, timeout=60, check=False)
+    with running.armed():
+        result = subprocess.run([*MMMD, "mcp", *running.at], input=talk, capture_output=True, timeout=60, check=False)
     answers = list(map(json.loads, result.stdout.splitlines()))
     assert result.returncode == 0 and b"Traceback" not in result.stderr
     assert len(answers) == len(HOSTILE) + 1
@@ -73,9 +74,11 @@ def test_a_host_that_reads_no_answer_does_not_delay_an_estop(running):
     process = subprocess.Popen([*MMMD, "mcp", *running.at], stdin=subprocess.PIPE, stdout=subprocess.PIPE)
     try:
         assert process.stdin is not None
-        process.stdin.write(b'{"id": 1, "method": "tools/list"}\n' * 200 + ESTOP + b"\n")
+        process.stdin.write(b'{"id": 1, "method": "tools/list"}\n' * 200)
         process.stdin.flush()
-        with running.client() as robot:
+        with running.armed() as robot:
+            process.stdin.write(ESTOP + b"\n")
+            process.stdin.flush()
             assert robot.wait_for("estop", timeout_s=30).state == "estop"
             robot.reset()
     finally:
@@ -83,6 +86,7 @@ def test_a_host_that_reads_no_answer_does_not_delay_an_estop(running):
         process.communicate()
 
 
+@pytest.mark.long
 def test_more_motions_than_64_do_not_wait(running):
     """Each one that waits is memory; a stop ends all that wait."""
     says = b"".join(tool(b'"say"', b'{"text": "wave", "seconds": 9}', b"%d" % n) + b"\n" for n in range(200))
