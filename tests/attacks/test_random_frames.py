@@ -1,6 +1,6 @@
 """Random frames on every socket of a whole daemon, seeded: it goes on, the robot keeps its limits, and no stop is lost.
 
-Short here; `make soak` runs the same for `SOAK_ROUNDS` rounds with other seeds.
+One round in the default suite; `make soak` runs the same for `SOAK_ROUNDS` rounds with other seeds.
 """
 
 from __future__ import annotations
@@ -17,9 +17,10 @@ from daemon.client import Client
 from daemon.wire.requests import CMD_TYPES, CTL_TYPES, STREAM_TYPES, tag_of
 from tests.attacks.zmtp import RawPeer, connected, frame
 from tests.support.harness import RunningDaemon, running_daemon
+from tests.support.sizes import few_and_long
 
 pytestmark = [pytest.mark.timeout(180), pytest.mark.realtime]
-ROUNDS, SOAK_ROUNDS = 2, 400
+SOAK_ROUNDS = 400
 FRAMES = 60
 """Frames of a round on each socket; below what the limit of requests drops."""
 STARTS_NOTHING = ("arm", "torque", "reset", "estop", "park")
@@ -115,8 +116,9 @@ def fuzz(seed: int, rounds: int) -> None:
             still_obeys(robot)
 
 
-def test_a_daemon_outlives_random_frames_and_obeys_after_each_round():
-    fuzz(1, ROUNDS)
+@pytest.mark.parametrize("rounds", few_and_long([1], [2]))
+def test_a_daemon_outlives_random_frames_and_obeys_after_each_round(rounds):
+    fuzz(1, rounds)
 
 
 @pytest.mark.soak

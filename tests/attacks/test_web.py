@@ -159,6 +159,7 @@ def test_a_body_that_is_too_long_is_not_read(web: Web) -> None:
     assert web.event("ctl", "status")["type"] == "state"
 
 
+@pytest.mark.long
 def test_a_stop_gets_through_a_flood(web: Web) -> None:
     """Requests beyond the limit are dropped before they reach the daemon; a stop among them is not."""
     ends, statuses = threading.Event(), []
@@ -193,6 +194,7 @@ async def ended(connection: WebSocketClientConnection) -> None:
         pass
 
 
+@pytest.mark.long
 def test_websockets_are_counted_and_given_back(web: Web) -> None:
     async def many() -> int:
         url, opened = f"ws://127.0.0.1:{web.port}/v1/pub", []

@@ -60,6 +60,7 @@ def test_hello_by_curl(port: str) -> None:
     assert '"type":"accepted"' in accepted and '"verb":"stop"' in stopped
 
 
+@pytest.mark.long
 def test_hello_in_python(daemon: RunningDaemon) -> None:
     """It stops a robot that moves: it stopped one that had not set out yet."""
     said = run(sys.executable, str(EXAMPLES / "hello.py"), *daemon.at).splitlines()
@@ -173,6 +174,7 @@ def log(daemon: RunningDaemon) -> Path:
     return path
 
 
+@pytest.mark.long
 def test_figures_of_a_log(log: Path) -> None:
     table = run(sys.executable, str(EXAMPLES / "log_figures.py"), str(log))
     assert table.startswith("reference, ") and table.count("\n") == 2 + 16
@@ -180,6 +182,7 @@ def test_figures_of_a_log(log: Path) -> None:
     assert right > left
 
 
+@pytest.mark.long
 def test_a_log_in_a_notebook(log: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
     """The test runs the cells in turn, as a reader does; the notebook is kept without outputs."""
     import matplotlib.pyplot  # slow to import, and every worker of xdist collects this file
@@ -204,6 +207,7 @@ def test_a_log_in_a_notebook(log: Path, monkeypatch: pytest.MonkeyPatch, capsys:
     assert 0 < names["lag_ms"] <= 200 and "reference: " in capsys.readouterr().out
 
 
+@pytest.mark.long
 def test_the_layout_for_foxglove_shows_what_a_log_holds(log: Path) -> None:
     """Every panel stands in the layout, every path has values in the log, the log panel lines, and the 3D panel its frame."""
     layout = json.loads((EXAMPLES / "foxglove_layout.json").read_text())

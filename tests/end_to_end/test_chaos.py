@@ -71,7 +71,7 @@ def test_a_recorder_killed_before_the_bus_is_unplugged_changes_nothing(servos, s
 @pytest.mark.parametrize(
     ("number", "states"),
     [
-        pytest.param(signal.SIGKILL, ("arming", "moving"), id="killed"),
+        pytest.param(signal.SIGKILL, ("arming", "moving"), id="killed", marks=pytest.mark.long),
         pytest.param(signal.SIGSTOP, ("moving",), id="frozen"),
         pytest.param(signal.SIGSTOP, ("fault",), id="frozen in a fault", marks=pytest.mark.long),
         pytest.param(signal.SIGKILL, ALL_STATES, id="killed in all", marks=pytest.mark.soak),
@@ -115,6 +115,7 @@ def test_a_second_daemon_is_told_which_process_has_the_port(shared: SharedDaemon
     assert f"in use by process {child_pid(shared.daemon, 'daemon.control.process')}" in second.stderr
 
 
+@pytest.mark.long
 def test_a_bus_process_that_dies_ends_the_command_once_and_is_status_3(shared: SharedDaemon):
     """Last of the module: ends the daemon."""
     daemon = shared.daemon

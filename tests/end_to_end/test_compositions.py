@@ -40,6 +40,7 @@ def armed(run):
         yield
 
 
+@pytest.mark.long
 def test_a_story_moves_with_its_first_part_and_skips_rejected_ones(run):
     with run.client() as robot:
         said = robot.story([("wave with your right hand", 1.6), "walk to the window", ("nod twice", 1.6), ("bow", 2.0)])
@@ -56,6 +57,7 @@ def test_a_story_moves_with_its_first_part_and_skips_rejected_ones(run):
         assert moving.t_mono < scenes[3].t_mono  # it moved before the last part was made
 
 
+@pytest.mark.long
 def test_a_text_barges_into_a_story_and_a_stop_ends_one(run):
     with run.client() as robot, run.client() as other:
         scenes = [SceneOf(text="clap your hands"), SceneOf(text="bow")]

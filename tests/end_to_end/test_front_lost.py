@@ -1,6 +1,7 @@
 """The front frozen and killed in states of the robot, as listed in docs/safety.md: a safe state in time, every limit kept.
 
-One or two of the states in `make test`, four in `make test-long`, all eight in the soak run.
+Killed in one of the states in `make test`; in two, and frozen in four, in `make test-long`; in all eight in the soak run. In
+`make test` a front is frozen in `test_stops.py`.
 """
 
 from __future__ import annotations
@@ -61,6 +62,7 @@ def test_a_front_killed_in_each_state_leaves_a_limp_robot_no_process(tmp_path, s
             servos.close()
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "states",
     [
@@ -91,6 +93,7 @@ def test_the_front_frozen_in_each_state_leaves_a_robot_that_stands(shared: Share
         assert_works(client)
 
 
+@pytest.mark.long
 def test_a_frozen_front_means_hold_then_park_and_it_resumes_afterwards(shared: SharedDaemon):
     daemon = shared.daemon
     parked = daemon.said.count("PARKING -> LIMP")

@@ -13,7 +13,7 @@ from sim.faults import Fault
 from tests.support.kinematic import generate
 from tests.support.robot_states import SharedDaemon, assert_works, within
 
-pytestmark = [pytest.mark.timeout(180), pytest.mark.realtime]
+pytestmark = [pytest.mark.timeout(180), pytest.mark.realtime, pytest.mark.long]
 FROZEN = threading.Event()
 """Set where the generator need not be frozen any longer."""
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import contextlib
+import io
 import json
 import socket
 import subprocess
@@ -10,6 +12,7 @@ import time
 
 import pytest
 
+from daemon.cli import main
 from daemon.client import RefusedError
 from daemon.scheduling.command_queue import SHADOW_S
 from daemon.wire.events import Accepted, Ack, Cancelled, Done, Progress
@@ -49,19 +52,19 @@ def said_early(daemon):
 def test_a_text_that_waits_for_the_model_says_so(run):
     """`mmmd say` right after the start wrote nothing for six seconds."""
     assert "the motion model is being loaded" in run.said_early.stderr
-    assert "being loaded" not in run.mmmd("say", "nod").stderr
+    assert "being loaded" not in run.mmmd("say", "nod", "--no-wait").stderr
 
 
 def test_three_texts_one_of_them_during_a_motion(run):
     with run.client() as robot:
-        first = robot.say("wave with your right hand")
+        first = robot.say("wave with your right hand", seconds=2.0)
         assert first.events[0].status == "accepted" and "wave" in first.events[0].understood
         assert isinstance(first.done, Done) and keeps_to_its_path(first.done)
         overtaken = robot.events_of(Say(id="overtaken", text="raise your left arm"))
         events = [next(overtaken) for _ in range(2)]
         assert [type(e) for e in events] == [Accepted, Progress]
         with run.client() as other:
-            second = other.say("nod twice")
+            second = other.say("nod twice", seconds=1.6)
         assert second.done is not None and keeps_to_its_path(second.done)
         last = next(overtaken)
         assert isinstance(last, Cancelled) and last.by == f"say {second.id}"
@@ -135,6 +138,8 @@ def test_a_checkpoint_that_is_none_is_told_before_anything_starts(tmp_path):
     """Nothing stands in for the model: it was restarted for ever, and the daemon said that it was ready."""
     broken = tmp_path / "model.safetensors"
     broken.write_bytes(b"no weights")
-    ended = mmmd("run", "--model", str(broken))
-    assert ended.returncode == 2 and str(broken) in ended.stderr and "no safetensors file" in ended.stderr
-    assert "ready" not in ended.stdout + ended.stderr.replace("no safetensors", "")
+    said, complaints = io.StringIO(), io.StringIO()
+    with contextlib.redirect_stdout(said), contextlib.redirect_stderr(complaints):
+        status = main(["run", "--model", str(broken)])
+    assert status == 2 and str(broken) in complaints.getvalue() and "no safetensors file" in complaints.getvalue()
+    assert "ready" not in said.getvalue() + complaints.getvalue().replace("no safetensors", "")

@@ -21,7 +21,9 @@ from tests.support.sizes import some_and_all
 pytestmark = [pytest.mark.timeout(180), pytest.mark.realtime]
 
 
-@pytest.mark.parametrize("states", some_and_all(("idle", "moving"), STATES))
+@pytest.mark.parametrize(
+    "states", [*some_and_all(("moving",), STATES), pytest.param(("idle",), id="idle", marks=pytest.mark.long)]
+)
 def test_the_recorder_killed_and_frozen_changes_nothing_for_the_robot(tmp_path, states):
     daemon = RunningDaemon("--log", str(tmp_path / "run.mcap")).until_ready()
     try:

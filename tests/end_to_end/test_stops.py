@@ -55,6 +55,7 @@ class Person:
         self._context.destroy(linger=0)
 
 
+@pytest.mark.long
 def test_a_killed_front_keeps_no_estop_from_the_bus_process(servos):
     daemon = daemon_on(servos)
     person = Person(daemon)
@@ -174,8 +175,8 @@ def test_the_loss_of_the_ctl_process_is_an_estop_and_it_is_restarted(shared: Sha
 @pytest.mark.parametrize(
     ("number", "after_s"),
     [
-        (signal.SIGKILL, 0.6),
-        (signal.SIGSTOP, 0.02),
+        pytest.param(signal.SIGKILL, 0.6, marks=pytest.mark.long),
+        pytest.param(signal.SIGSTOP, 0.02, marks=pytest.mark.long),
         pytest.param(signal.SIGKILL, 0.02, marks=pytest.mark.soak),
         pytest.param(signal.SIGSTOP, 0.6, marks=pytest.mark.soak),
     ],

@@ -129,6 +129,7 @@ def test_the_example_runs(robot, running):
     assert ran.returncode == 0 and ran.stdout.startswith("Done("), ran.stderr
 
 
+@pytest.mark.long
 def test_the_command_streams_lines_from_its_input(robot, running):
     names, rest = robot.status().joint_names, robot.status().goal_rad
     lines = [json.dumps({names[0]: rest[0] + 0.01 * k}) for k in range(20)] + [json.dumps(rest)]

@@ -186,6 +186,7 @@ with Client(Endpoints(*sys.argv[1:4])) as robot, robot.stream("doomed") as strea
 """
 
 
+@pytest.mark.long
 def test_a_client_that_is_killed_leaves_no_arm_moving(robot, running):
     ends = running.endpoints
     with subprocess.Popen(

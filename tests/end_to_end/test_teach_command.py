@@ -126,6 +126,23 @@ def lead(daemon: RunningDaemon, servos, poses) -> None:
             servos.bus.world.move_by_hand(pose)
 
 
+def test_a_led_arm_becomes_a_gesture(taught, servos, gestures):
+    daemon, begun = taught
+    with begun("my_lift", "--limp", "--yes", "--text", "lifts an arm") as teaching:
+        teaching.until("Enter ends it")
+        lead(daemon, servos, UP_AND_DOWN[::2])
+        teaching.type("")
+        status, complaints = teaching.ended()
+    assert status == 0, complaints
+    assert "kept my_lift: gesture of" in teaching.said and "the right arm" in teaching.said
+    clip = GestureLibrary(gestures).get("my_lift")
+    assert (clip.side, clip.text) == ("right", "lifts an arm")
+    with daemon.client() as client:
+        assert client.status().state == "limp" and not servos.torque, "teaching gives no torque"
+        assert next(g for g in client.capabilities().gestures if g.name == "my_lift").own
+
+
+@pytest.mark.long
 def test_a_led_arm_becomes_a_gesture_that_the_robot_shows(taught, servos, gestures):
     """From an armed robot to the played gesture; text cannot arm it meanwhile, and the audit of every goal is clean."""
     daemon, begun = taught
@@ -274,21 +291,24 @@ def test_the_example_goes_from_one_taught_pose_to_another(taught, servos):
     assert nearest_deg(1.0, arm) < 5 and nearest_deg(0.5, arm[-1:]) < 5
 
 
-def test_nothing_goes_limp_or_is_written_over_unasked(taught, servos, gestures, monkeypatch):
+REFUSED = [
+    (("my_lift", "--yes"), "", 2, "waist_pitch would fall"),
+    (("my_lift", "--limp"), "no", 2, "nothing was changed"),
+    (("nod", "--limp", "--yes"), "", 1, "one that ships"),
+    (("nod", "--limp"), "no", 1, "one that ships"),
+    (("my_lift", "--limp"), None, 2, "end of input"),
+    (("My Lift", "--limp"), "", 1, "a-z"),
+    (("my_lift", "--limp", "--seconds", "600"), "", 2, "60 at most"),
+]
+
+
+@pytest.mark.parametrize("cases", few_and_long([REFUSED[:2]], [REFUSED[2:]]), ids=["limp", "other"])
+def test_nothing_goes_limp_or_is_written_over_unasked(taught, servos, gestures, monkeypatch, cases):
     """A trunk that would fall, a name that is taken, a no, an end of input: refused before anything changes."""
     daemon, _ = taught
     with daemon.client() as client:
         client.arm()
         client.wait_for("idle", timeout_s=20)
-        cases = [
-            (("my_lift", "--yes"), "", 2, "waist_pitch would fall"),
-            (("nod", "--limp", "--yes"), "", 1, "one that ships"),
-            (("nod", "--limp"), "no", 1, "one that ships"),
-            (("my_lift", "--limp"), "no", 2, "nothing was changed"),
-            (("my_lift", "--limp"), None, 2, "end of input"),
-            (("My Lift", "--limp"), "", 1, "a-z"),
-            (("my_lift", "--limp", "--seconds", "600"), "", 2, "60 at most"),
-        ]  # fmt: skip
         for arguments, typed, wanted, says in cases:
             monkeypatch.setattr(sys, "stdin", io.StringIO("" if typed is None else f"{typed}\n"))
             done = daemon.mmmd("gesture", "teach", *arguments)

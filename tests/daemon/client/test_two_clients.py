@@ -47,6 +47,7 @@ def test_both_clients_have_the_same_calls():
     assert public_calls(Client) == public_calls(AsyncClient)
 
 
+@pytest.mark.long
 def test_both_clients_go_on_after_a_restart_and_say_nothing_late(running):
     async def main() -> None:
         with Client(running.endpoints, timeout_s=1.0) as plain:
@@ -73,6 +74,7 @@ def test_both_clients_go_on_after_a_restart_and_say_nothing_late(running):
     asyncio.run(main())
 
 
+@pytest.mark.long
 def test_the_async_client_says_stops_and_watches_at_once(running):
     async def main() -> None:
         async with AsyncClient(running.endpoints) as robot:
@@ -267,6 +269,7 @@ def test_notifications_get_no_answer():
     asyncio.run(main())
 
 
+@pytest.mark.long
 def test_the_command_serves_stdio(running):
     talk = '{"id": 1, "method": "tools/call", "params": {"name": "status"}}\n'
     result = subprocess.run(

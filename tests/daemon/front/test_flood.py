@@ -62,7 +62,7 @@ class Flood:
         self._thread.join(30)
 
 
-@pytest.mark.parametrize(("messages", "robot"), few_and_long([(2_500, None)], [(13_000, "reference")]))
+@pytest.mark.parametrize(("messages", "robot"), few_and_long([(1_000, None)], [(2_500, None), (13_000, "reference")]))
 def test_a_flood_of_messages_ends_no_motion_and_hides_no_stop(messages, robot):
     """The front served all of them before anything else: the robot ran dry, was held as if the front were gone, parked.
 

@@ -67,6 +67,7 @@ def test_a_text_during_a_motion_takes_over(robot, running, context):
     assert events[1].by == "say two"
 
 
+@pytest.mark.long
 def test_a_draft_is_played_at_once_and_its_motion_takes_its_place(robot, running, context):
     LET_GO.clear()
     socket = dealer(context, running.endpoints.cmd)
@@ -81,11 +82,13 @@ def test_a_draft_is_played_at_once_and_its_motion_takes_its_place(robot, running
     assert plays_well(events[-1])
 
 
+@pytest.mark.long
 def test_a_draft_whose_motion_never_comes_is_played_to_its_end(robot):
     said = robot.say("drafted and lost: lift your right arm", seconds=3.0)
     assert 1.4 < said.done.duration_s < 2.5
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("mirror", "up"), few_and_long([(True, "left")], [(False, "right")]))
 def test_a_text_with_a_prefix_continues_from_the_frames_before_it(robot, running, mirror, up):
     """The generator is shown the last 1.6 s; of a motion that is to be mirrored, their mirror image."""
@@ -100,6 +103,7 @@ def test_a_text_with_a_prefix_continues_from_the_frames_before_it(robot, running
     assert said.done is not None and plays_well(said.done)
 
 
+@pytest.mark.long
 def test_of_many_texts_at_once_the_newest_is_played_and_each_ends_once(robot, running, context):
     socket = dealer(context, running.endpoints.cmd)
     for i in range(30):
@@ -134,7 +138,7 @@ def test_out_of_scope_is_rejected_and_nothing_moves(robot):
     assert robot.status().goal_rad == before
 
 
-@pytest.mark.parametrize(("text", "code"), [("broken", "generator_error"), ("short", "bad_motion")])
+@pytest.mark.parametrize(("text", "code"), few_and_long([("broken", "generator_error")], [("short", "bad_motion")]))
 def test_a_generator_that_fails_is_a_named_failure(robot, text, code):
     with pytest.raises(RefusedError) as caught:
         robot.say(text)

@@ -97,6 +97,7 @@ def test_torque_off_goes_limp_and_waits_for_an_arm(robot, running):
     assert robot.say("wave").done
 
 
+@pytest.mark.long
 def test_park_goes_limp_and_the_next_text_arms(robot, running):
     thread, outcome = say_in_thread(robot, running, "wave", 4.0)
     robot.park()

@@ -14,6 +14,7 @@ from daemon.network.keys import ZAP, Doorkeeper, KeyFolder
 from daemon.settings.config import Endpoints
 from tests.support.harness import RunningDaemon
 from tests.support.keys import pair_of_folders
+from tests.support.sizes import few_and_long
 
 pytestmark = pytest.mark.realtime
 
@@ -48,7 +49,7 @@ def test_an_allowed_client_does_everything(secured):
             assert client.status().stream.lease.targets > 0
 
 
-@pytest.mark.parametrize("who", ["no key", "a key that is not allowed", "the wrong daemon's key"])
+@pytest.mark.parametrize("who", few_and_long(["a key that is not allowed"], ["no key", "the wrong daemon's key"]))
 def test_a_stranger_gets_nothing_on_any_socket(secured, tmp_path, who):
     daemon, robot, _ = secured
     stranger = KeyFolder(tmp_path / "stranger")
@@ -84,6 +85,7 @@ def test_a_stranger_gets_nothing_on_any_socket(secured, tmp_path, who):
         assert now.stream.bad == {}, "a stranger's frame has come in at `stream`"
 
 
+@pytest.mark.long
 def test_a_key_can_be_allowed_and_taken_back_while_it_runs(secured, tmp_path):
     daemon, robot, _ = secured
     guest = KeyFolder(tmp_path / "guest")

@@ -14,18 +14,15 @@ pytestmark = [pytest.mark.timeout(120), pytest.mark.realtime]
 
 
 def test_tempo_repeat_and_hold_change_what_is_played(robot):
-    plain = robot.say("wave", seconds=2.0).done
-    slow = robot.say("wave", seconds=2.0, tempo=0.5).done
-    fast = robot.say("wave", seconds=2.0, tempo=2.0).done
-    assert slow.frames > 1.7 * plain.frames and fast.frames < 0.7 * plain.frames
-    assert robot.say("wave", seconds=2.0, tempo=2.0, repeat=3).done.frames > 2 * fast.frames
     before = robot.status().goal_rad
-    robot.say("wave", seconds=1.0, hold=True)
+    plain, slow, fast = (robot.say("wave", seconds=1.0, amplitude=0.5, tempo=tempo).done for tempo in (1.0, 0.5, 2.0))
+    assert slow.frames > 1.7 * plain.frames and fast.frames < 0.7 * plain.frames
+    assert robot.say("wave", seconds=1.0, amplitude=0.5, tempo=2.0, repeat=3, hold=True).done.frames > 2 * fast.frames
     held = robot.wait_for("idle", timeout_s=3)
     assert max(abs(a - b) for a, b in zip(held.goal_rad, before, strict=True)) > 0.3
-    robot.say("wave", seconds=1.0)
 
 
+@pytest.mark.long
 def test_mirror_moves_the_other_arm(robot):
     robot.say("wave with your right hand", seconds=1.0, hold=True)
     right = dict(zip((s := robot.status()).joint_names, s.goal_rad, strict=True))
@@ -37,6 +34,7 @@ def test_mirror_moves_the_other_arm(robot):
     robot.say("wave", seconds=1.0)
 
 
+@pytest.mark.long
 def test_amplitude_scales_the_movement(robot):
     full = robot.say("wave", seconds=1.0).done
     small = robot.say("wave", seconds=1.0, amplitude=0.4).done
@@ -59,6 +57,7 @@ def test_a_loop_goes_on_until_it_is_cancelled(robot, talk):
     robot.wait_for("holding", timeout_s=20)
 
 
+@pytest.mark.long
 def test_after_waits_for_its_turn_and_ends_a_loop_gracefully(robot, talk):
     talk.send(Say(id="a", text="wave", seconds=1.0, loop=True))
     talk.until("a", ev.Progress)
@@ -72,6 +71,7 @@ def test_after_waits_for_its_turn_and_ends_a_loop_gracefully(robot, talk):
     assert [talk.until(x, ev.Progress).seq > done[k].seq for k, x in enumerate("bc")] == [True, True]
 
 
+@pytest.mark.long
 def test_a_now_overtakes_those_that_wait(robot, talk):
     talk.send(Say(id="long", text="wave", seconds=3.0))
     talk.until("long", ev.Progress)
@@ -142,6 +142,7 @@ def test_too_many_waiting_are_refused(robot, talk):
     assert robot.status().waiting == []
 
 
+@pytest.mark.long
 def test_the_same_id_is_one_gesture_and_never_another_command(robot, talk):
     for _ in range(2):
         talk.send(Gesture(id="g", name="nod"))

@@ -23,6 +23,7 @@ def test_gestures_need_no_generator_words(robot):
     assert caught.value.code == "unknown_gesture" and "nod" in caught.value.event.allowed
 
 
+@pytest.mark.long
 def test_record_keeps_the_newest_motion_as_a_gesture(robot):
     robot.say("wave with your right hand", seconds=1.0)
     assert "my_wave" in robot.record("my_wave").note
@@ -46,6 +47,7 @@ def test_a_recorded_gesture_is_not_overwritten_and_keeps_its_text(robot):
     assert robot.record("shown_left", replace=True).note == "shown_left: wave with your left hand"
 
 
+@pytest.mark.long
 def test_look_turns_the_head_while_the_arm_moves_and_lets_go(robot):
     names = robot.status().joint_names
     head = next(i for i, n in enumerate(names) if "head" in n and ("yaw" in n or "pan" in n))

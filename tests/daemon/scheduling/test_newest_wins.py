@@ -78,7 +78,8 @@ REFUSED = {
 }
 
 
-@pytest.mark.parametrize("refused", few_and_long(["out of scope", "unknown"], REFUSED))
+@pytest.mark.long
+@pytest.mark.parametrize("refused", REFUSED)
 def test_a_refused_command_leaves_what_waits(talk, refused):
     talk.send(Say(text="wave", seconds=1.5))
     waits = talk.send(Say(text="left wave", seconds=0.6, when="after"))
@@ -88,7 +89,7 @@ def test_a_refused_command_leaves_what_waits(talk, refused):
     assert (talk.end(no), talk.end(waits)) == ("rejected", "done")
 
 
-@pytest.mark.parametrize("refused", few_and_long(["slowly out of scope", "too late"], REFUSED))
+@pytest.mark.parametrize("refused", few_and_long(["slowly out of scope"], REFUSED))
 def test_a_refused_command_leaves_what_is_being_made(talk, refused):
     being_made = talk.send(Say(text="slow left wave", seconds=0.6))
     no = talk.send(REFUSED[refused]())
@@ -96,6 +97,7 @@ def test_a_refused_command_leaves_what_is_being_made(talk, refused):
     assert (talk.end(no), talk.end(being_made)) == ("rejected", "done")
 
 
+@pytest.mark.long
 def test_an_older_one_that_is_made_later_does_not_take_over_from_a_newer(talk):
     older = talk.send(Say(text="slow wave"))
     newer = talk.send(Gesture(name="nod"))  # needs no generator: accepted first
@@ -123,6 +125,7 @@ def test_a_due_command_ends_those_before_it_and_yields_to_a_newer(talk):
     assert talk.heard[timed][-1].by == f"say {newer}" and talk.end(newer) == "done"
 
 
+@pytest.mark.long
 def test_beyond_what_may_wait_the_newest_is_still_let_in(talk):
     """Sixty-four that are being made: the oldest of them gives way, none is refused."""
     all_ = [talk.send(Say(text="slow wave")) for _ in range(66)]
@@ -144,6 +147,7 @@ COMMANDS = st.lists(
 )
 
 
+@pytest.mark.long
 @settings(max_examples=4, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(COMMANDS)
 def test_each_ends_once_and_only_by_what_was_accepted_and_is_newer(talk, wanted):

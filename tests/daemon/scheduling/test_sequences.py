@@ -218,7 +218,11 @@ class Sequence:
 
 
 @pytest.mark.parametrize(
-    ("seed", "steps"), [(SEED, STEPS), pytest.param(None, FRESH_STEPS, id="fresh", marks=pytest.mark.soak)]
+    ("seed", "steps"),
+    [
+        pytest.param(SEED, STEPS, marks=pytest.mark.long),
+        pytest.param(None, FRESH_STEPS, id="fresh", marks=pytest.mark.soak),
+    ],
 )
 def test_random_sequences_keep_to_the_model(seed, steps, tmp_path):
     drawn = seed or random.SystemRandom().randrange(10**6)
