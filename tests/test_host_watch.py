@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from tests.host_watch import LEAST_S, STILL_S, WAIT_IN_ALL_S, HostWatch
+from tests.support.sizes import few_and_long
 
 pytest_plugins = ["pytester"]
 ROOT = Path(__file__).parents[1]
@@ -90,7 +91,7 @@ def test_what_a_failed_test_leaves_open_does_not_fail_another(pytester, monkeypa
 
 
 @pytest.mark.parametrize("option", [[], ["--void-when-held-up"]], ids=["first run", "second run"])
-@pytest.mark.parametrize("held_up", [True, False])
+@pytest.mark.parametrize("held_up", few_and_long([True], [True, False]))
 def test_only_a_realtime_failure_while_the_machine_stands_still_is_void(pytester, monkeypatch, option, held_up):
     monkeypatch.setenv("PYTHONPATH", str(ROOT))
     pytester.makepyprojecttoml("[tool.pytest.ini_options]\nmarkers = ['realtime']")

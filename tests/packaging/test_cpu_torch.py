@@ -92,6 +92,7 @@ def set_up(python: Path, configured: str, cpu_index: str, *arguments: str, const
     return done, versions.get("torch")
 
 
+@pytest.mark.long
 def test_a_cpu_build_of_the_configured_index_is_taken(python, tmp_path):
     configured = make_index(tmp_path / "public", ("2.13.0", GPU), ("2.13.0+cpu", ()))
     done, version = set_up(python, configured, "file:///nowhere")
@@ -124,6 +125,7 @@ def test_pytorchs_own_index_comes_next(python, tmp_path):
     assert version == "2.13.0+cpu" and "/cpu" in done.stdout
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("cpu_index_has", [(), pytest.param((("2.13.0", GPU),), marks=pytest.mark.long)])
 def test_without_a_cpu_build_it_stops_and_says_what_would_come(cpu_index_has, python, tmp_path):
     configured = make_index(tmp_path / "public", ("2.13.0", GPU))

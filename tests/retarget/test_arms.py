@@ -19,7 +19,7 @@ from retarget.human.poser import Poser
 from retarget.path.limits import JointLimits
 from retarget.pipeline import Retargeter
 from retarget.robot.kinematics import Kinematics
-from tests.support.sizes import examples
+from tests.support.sizes import examples, few_and_long
 
 REACHES_ALL = [name for name in FAMILIES if int(name[0]) >= 4]
 LEAST_ERROR = [name for name in FAMILIES if int(name[0]) < 4]
@@ -127,7 +127,7 @@ def test_an_arm_that_cannot_reach_comes_as_near_as_any_pose_of_a_grid(family, tm
     assert (solutions >= np.deg2rad(low) - 1e-12).all() and (solutions <= np.deg2rad(high) + 1e-12).all()
 
 
-@pytest.mark.parametrize("family", list(FAMILIES))
+@pytest.mark.parametrize("family", few_and_long(list(FAMILIES)[::4], list(FAMILIES)))
 def test_a_motion_is_retargeted_on_every_family(family, tmp_path):
     r = Retargeter(made_robot(tmp_path, family))
     path = r.retarget(random_motion(3, 60, "smooth"))

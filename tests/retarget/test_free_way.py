@@ -50,9 +50,10 @@ def searched(name: str, start: np.ndarray, goal: np.ndarray) -> RrtConnect:
     return search
 
 
-@settings(max_examples=examples(15), deadline=None)
-@given(names, seeds, st.booleans())
-@example("toddlerbot", 204342947, False)
+@pytest.mark.parametrize("name", few_and_long(["reference", "op2"], ROBOTS))
+@settings(max_examples=examples(12), deadline=None)
+@given(seed=seeds, parks=st.booleans())
+@example(seed=204342947, parks=False)  # of toddlerbot
 def test_on_no_way_to_park_or_rest_it_touches_itself(name, seed, parks):
     """From any pose; where it starts in contact, each pair in contact only parts, and none joins it.
 
@@ -74,7 +75,7 @@ def test_on_no_way_to_park_or_rest_it_touches_itself(name, seed, parks):
 
 
 @pytest.mark.parametrize("n_poses", [20, pytest.param(60, marks=pytest.mark.soak)])
-@pytest.mark.parametrize("name", few_and_long(["op2", "reference"], ROBOTS))
+@pytest.mark.parametrize("name", few_and_long(["reference"], ROBOTS))
 def test_from_clear_poses_and_from_slight_contacts_a_way_is_found(name, n_poses):
     """Shapes are coarse: an arm that rests on the body may be some millimetres in it."""
     depths = {seed: -float(BODIES[name].clearance_m(drawn(name, seed)[None])[0]) for seed in range(n_poses)}
@@ -106,7 +107,9 @@ def blocked(name: str) -> tuple[np.ndarray, np.ndarray]:
     raise AssertionError("no such pose")
 
 
-@pytest.mark.parametrize("name", ["reference", "toddlerbot"])  # the short arms of op2 find it free from everywhere
+@pytest.mark.parametrize(
+    "name", few_and_long(["reference"], ["toddlerbot"])
+)  # op2's short arms find it free from everywhere
 def test_where_a_straight_line_crosses_the_robot_the_way_goes_round(name):
     start, goal = blocked(name)
     way = searched(name, start, goal).way

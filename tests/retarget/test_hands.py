@@ -11,6 +11,7 @@ from retarget.human.hand_contacts import read_contacts
 from retarget.path.paths import JointPath
 from retarget.pipeline import Retargeter
 from retarget.robot.loading import load_robot
+from tests.support.sizes import few_and_long
 
 CLAPPING = ("reference", "toddlerbot", "poppy_torso", "op3")
 """Robots whose arms are long and fast enough for a person's tempo."""
@@ -31,7 +32,7 @@ def test_contacts_are_seen_on_the_person() -> None:
     assert not any(s.max() >= 1 for s in wave.values())
 
 
-@pytest.mark.parametrize("name", CLAPPING)
+@pytest.mark.parametrize("name", few_and_long(["op3"], CLAPPING))
 def test_a_clap_claps_as_often_on_the_robot(name: str, retargeters: dict[str, Retargeter]) -> None:
     motion = gesture("clap", count=3)
     path = retargeters[name].retarget(motion)
@@ -42,7 +43,7 @@ def test_a_clap_claps_as_often_on_the_robot(name: str, retargeters: dict[str, Re
     assert max(closed_m) < 0.025 < min(open_m), "the hands part between two claps"
 
 
-@pytest.mark.parametrize("name", SLOW)
+@pytest.mark.parametrize("name", few_and_long(["reachy_2021"], SLOW))
 def test_a_slow_robot_comes_together_as_often(name: str, retargeters: dict[str, Retargeter]) -> None:
     motion = gesture("clap", count=3)
     closed_m, open_m = claps_m(retargeters[name], motion, retargeters[name].retarget(motion))
@@ -50,6 +51,7 @@ def test_a_slow_robot_comes_together_as_often(name: str, retargeters: dict[str, 
     assert max(closed_m) < 0.04 and min(open_m) > 0.07
 
 
+@pytest.mark.long
 def test_every_clap_of_two_to_six_meets_on_a_slow_robot(retargeters: dict[str, Retargeter]) -> None:
     for count in (2, 4, 5, 6):
         motion = gesture("clap", count=count)
@@ -84,6 +86,7 @@ def test_without_contacts_nothing_changes(retargeters: dict[str, Retargeter]) ->
     assert plain.report.contacts == {}
 
 
+@pytest.mark.long
 def test_a_path_out_of_contact_does_not_stray_from_the_motion() -> None:
     """OP2's hands cannot meet; of the paths on which they do not touch, one with arms past each other is not taken."""
     errors_deg = [

@@ -51,6 +51,7 @@ def test_chunks_join_keep_every_bound_and_touch_nothing(name: str, seed: int, ki
     assert not end_of(stopped).velocity_rad_s.any()
 
 
+@pytest.mark.long
 @settings(max_examples=examples(7))
 @given(names, st.integers(0, 10_000), kinds)
 def test_a_long_motion_keeps_every_bound_across_its_blocks(name: str, seed: int, kind: str) -> None:
@@ -62,6 +63,7 @@ def test_a_long_motion_keeps_every_bound_across_its_blocks(name: str, seed: int,
     assert CHECKS[name].frames(path.at_rate(100.0)[::4]) == 0
 
 
+@pytest.mark.long
 @settings(max_examples=examples(7))
 @given(names, st.integers(0, 10_000), kinds)
 def test_a_first_piece_at_once_keeps_every_bound_and_touches_nothing(name: str, seed: int, kind: str) -> None:
@@ -91,7 +93,7 @@ def held_before(motion: Motion, n: int) -> Motion:
 @pytest.mark.parametrize(
     ("name", "at_least"),
     [
-        *few_and_long([("reference", 3)], [("op3", 3)]),
+        *(pytest.param(name, 3, marks=pytest.mark.long) for name in ("reference", "op3")),
         *(pytest.param(name, 12, marks=pytest.mark.soak) for name in RETARGETERS),
     ],
 )
@@ -149,7 +151,7 @@ def test_a_gentle_motion_may_be_shifted_by_any_time(seed: int, shift: int) -> No
     assert np.abs(np.diff(seen, axis=0)).max() > 5e-3  # one frame more or less would be seen
 
 
-@pytest.mark.parametrize("name", list(RETARGETERS))
+@pytest.mark.parametrize("name", few_and_long(["op3", "ffw_bg2"], list(RETARGETERS)))
 def test_a_start_too_fast_or_outside_comes_back_inside(name: str) -> None:
     """Speed towards a position limit that no braking can hold: it is passed by as little as braking allows, and left."""
     r = RETARGETERS[name]

@@ -10,6 +10,7 @@ from retarget.path.least_distances import LeastDistances
 from retarget.robot.loading import list_robots, load_robot
 from tests.retarget.test_collision import measured_m
 from tests.support.robots import ByName, packaged
+from tests.support.sizes import few_and_long
 
 CONTACTS = ByName(list_robots(), lambda name: SelfContact(packaged(name)))
 
@@ -26,7 +27,7 @@ def wandering(name: str, n: int, step_rad: float, seed: int = 5) -> np.ndarray:
     return np.array(q)
 
 
-@pytest.mark.parametrize("name", list(CONTACTS))
+@pytest.mark.parametrize("name", few_and_long(["reference", "op2"], list(CONTACTS)))
 def test_no_bound_is_above_the_true_distance(name: str) -> None:
     contact = CONTACTS[name]
     q = wandering(name, 60, 0.15)
@@ -37,7 +38,7 @@ def test_no_bound_is_above_the_true_distance(name: str) -> None:
     assert (contact.touching(contact.least(q)) == contact.frames(q, 1.0)).all()
 
 
-@pytest.mark.parametrize("name", list(CONTACTS))
+@pytest.mark.parametrize("name", few_and_long(["reference", "op2"], list(CONTACTS)))
 def test_a_path_is_found_free_where_it_is_without_bounds(name: str) -> None:
     """With bounds from its own frames, from frames nearby, and without, the same segments touch."""
     contact, free, hits = CONTACTS[name], 0, 0

@@ -179,6 +179,7 @@ def test_directions_and_zero_are_as_the_file_says() -> None:
     assert ticks.rad_to_tick(q)[right] == 2048 - round(4096 * 9 / 360)
 
 
+@pytest.mark.long
 def test_retargeting_loads_no_torch() -> None:
     code = "import sys, retarget.pipeline, daemon.control.control_loop, daemon.front.front; sys.exit('torch' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", code], timeout=60, check=False).returncode == 0

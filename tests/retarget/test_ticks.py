@@ -18,7 +18,7 @@ from retarget.robot.robot import RobotModel
 from retarget.robot.ticks import JointServoMap
 from tests.retarget.robot_files import joint, write_robot
 from tests.support.robots import ByName, packaged
-from tests.support.sizes import examples
+from tests.support.sizes import examples, few_and_long
 
 WAIST = (
     joint("waist_roll", "waist_roll", "[-30, 30]")
@@ -90,7 +90,7 @@ def small(body: str, protocol: float) -> RobotModel:
 ROBOTS = ByName((*list_robots(), *KINDS), lambda name: small(*KINDS[name][:2]) if name in KINDS else packaged(name))
 
 
-@pytest.mark.parametrize("name", ROBOTS)
+@pytest.mark.parametrize("name", few_and_long(["reference", "turned", "geared"], ROBOTS))
 @given(data=st.data())
 @settings(max_examples=examples(40))
 def test_ticks_are_at_most_half_a_tick_off_and_within_limits(name: str, data: st.DataObject) -> None:
@@ -112,7 +112,7 @@ def test_ticks_are_at_most_half_a_tick_off_and_within_limits(name: str, data: st
     assert np.array_equal(servo_map.to_ticks(np.stack([q, back]))[0], servo_map.to_ticks(q)), "same bits in a batch"
 
 
-@pytest.mark.parametrize("name", ROBOTS)
+@pytest.mark.parametrize("name", few_and_long(["reference", "turned", "geared"], ROBOTS))
 @given(data=st.data())
 @settings(max_examples=examples(25))
 def test_a_path_within_the_joints_limits_keeps_every_servos(name: str, data: st.DataObject) -> None:

@@ -13,6 +13,7 @@ from sim.errors import SimSettingError
 from sim.faults import Fault, FaultSchedule
 from sim.options import world_of
 from sim.world import World
+from tests.support.sizes import few_and_long
 
 ROBOTS = [n for n in list_robots() if all(s.model.model_number in MODELS for s in load_robot(n, blanks=True).servos)]
 REFERENCE = load_robot("reference")
@@ -31,7 +32,7 @@ def goals(world: World, q_rad: np.ndarray, seconds: float, torque: bool = True) 
     return JointServoMap(world.robot).tick_to_rad(world.drives.position_tick)
 
 
-@pytest.mark.parametrize("name", ROBOTS)
+@pytest.mark.parametrize("name", few_and_long(["reference", "op3"], ROBOTS))
 @pytest.mark.parametrize("body", ["plain", "mujoco"])
 def test_every_robot_holds_its_rest_pose_in_either_body(name: str, body: str) -> None:
     robot = load_robot(name)

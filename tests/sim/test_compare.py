@@ -37,6 +37,7 @@ def stretch_of(records) -> Stretch:
     )
 
 
+@pytest.mark.long
 def test_a_simulated_run_is_what_the_simulator_makes_of_its_log(run):
     robot, records = run
     found = compare([stretch_of(records)], robot)
@@ -68,6 +69,7 @@ def test_servos_that_did_something_else_are_found(run):
     assert found.worst.joint_name == robot.joint_names[4] and found.worst.rms_deg > 10
 
 
+@pytest.mark.long
 def test_gravity_makes_a_difference(run):
     robot, records = run
     plain, heavy = (compare([stretch_of(records)], robot, body).rms_deg for body in ("plain", "mujoco"))

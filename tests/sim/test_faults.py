@@ -15,6 +15,7 @@ from sim.errors import FaultFileError
 from sim.faults import KINDS, PACKET_KINDS, Fault, FaultSchedule
 from sim.port import SimPort
 from tests.support.servo_bench import Bench
+from tests.support.sizes import few_and_long
 
 
 def test_a_schedule_is_read_and_strikes_in_its_time(tmp_path: Path) -> None:
@@ -94,7 +95,7 @@ def test_a_missing_schedule_is_named(tmp_path: Path) -> None:
         FaultSchedule.load(tmp_path / "none.toml")
 
 
-@pytest.mark.parametrize("kind", sorted(PACKET_KINDS.keys() - {"deaf"}))
+@pytest.mark.parametrize("kind", few_and_long(["corrupt", "drop"], sorted(PACKET_KINDS.keys() - {"deaf"})))
 def test_the_same_seed_spoils_the_same_answers(kind: str) -> None:
     def heard(seed: int) -> list[bytes]:
         b = Bench(faults=(Fault(kind, probability=0.4),), seed=seed)

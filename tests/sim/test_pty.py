@@ -32,6 +32,7 @@ from sim.port import SimPort
 from sim.pty import PtyServer
 from sim.world import World
 from tests.support.robots import packaged
+from tests.support.sizes import few_and_long
 
 pytestmark = pytest.mark.realtime
 
@@ -154,7 +155,7 @@ def test_two_ports_lead_to_one_robot(tmp_path: Path) -> None:
             port.close()
 
 
-@pytest.mark.parametrize("other_path", [False, True])
+@pytest.mark.parametrize("other_path", few_and_long([True], [False, True]))
 def test_unplugged_the_tty_is_gone_and_comes_back_as_another_one(tmp_path: Path, other_path: bool) -> None:
     link, again = tmp_path / "servos", tmp_path / ("other" if other_path else "servos")
     fault = Fault("unplug", start_s=0.4, end_s=0.8, path=str(again) if other_path else None)
@@ -200,6 +201,7 @@ def run_sim(*arguments: str) -> subprocess.Popen[str]:
     return subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
 
 
+@pytest.mark.long
 def test_the_command_serves_two_ports_names_its_faults_and_audits(tmp_path: Path) -> None:
     schedule, audit = tmp_path / "faults.toml", tmp_path / "audit.json"
     schedule.write_text('[[fault]]\nkind = "overload"\nservo_id = 2\n')

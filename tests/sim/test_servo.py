@@ -8,11 +8,12 @@ from daemon.dynamixel.codec import packet
 from daemon.dynamixel.codec.packet import ErrorCode, FactoryReset
 from daemon.dynamixel.registers.models import MODELS
 from tests.support.servo_bench import Bench
+from tests.support.sizes import few_and_long
 
 PROTOCOL_2 = [m.name for m in MODELS.values() if m.protocol == 2.0]
 
 
-@pytest.mark.parametrize("name", PROTOCOL_2)
+@pytest.mark.parametrize("name", few_and_long(PROTOCOL_2[::6], PROTOCOL_2))
 def test_every_model_answers_with_its_number_and_goes_where_it_is_sent(name: str) -> None:
     b = Bench(name)
     answer = b.ask(packet.ping(1))[0].parameters

@@ -11,6 +11,7 @@ from daemon.dynamixel.registers.models import MODELS
 from sim.faults import Fault
 from sim.servos.servo_protocol1 import ANGLE_ERROR, INSTRUCTION_ERROR, OVERLOAD_ERROR, RANGE_ERROR
 from tests.support.servo_bench import Bench as Bench2
+from tests.support.sizes import few_and_long
 
 PROTOCOL_1 = [m.name for m in MODELS.values() if m.protocol == 1.0]
 
@@ -30,7 +31,7 @@ class Bench(Bench2):
         return item.decode(self.ask(packet1.read(servo_id, item.address, item.size))[0].parameters)
 
 
-@pytest.mark.parametrize("name", PROTOCOL_1)
+@pytest.mark.parametrize("name", few_and_long(PROTOCOL_1[:2], PROTOCOL_1))
 def test_every_model_answers_and_goes_where_it_is_sent(name: str) -> None:
     b = Bench(name)
     assert b.ask(packet1.ping(1)) == [Packet(1, packet.Instruction.STATUS)]

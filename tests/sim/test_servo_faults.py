@@ -45,6 +45,7 @@ def test_a_blocked_shaft_overloads_within_seconds() -> None:
     assert b.read("hardware_error_status") == 1 << 5 and b.read("torque_enable") == 0
 
 
+@pytest.mark.long
 def test_work_heats_a_servo_and_rest_cools_it() -> None:
     b = Bench(faults=(Fault("stuck", start_s=0.1, end_s=100.0),))
     b.write("current_limit", 400)  # 47 % of stall: no overload

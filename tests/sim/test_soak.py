@@ -180,6 +180,7 @@ def test_the_table_says_of_every_kind_what_is_expected() -> None:
     assert all(e.why for e in EXPECTED.values() if e.words is None)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("listens", [True, False])
 def test_the_witness_finds_what_the_daemon_does_not_say(listens: bool) -> None:
     """As if the daemon said nothing: nobody listens to it."""

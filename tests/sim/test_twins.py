@@ -12,7 +12,7 @@ from daemon.dynamixel.codec.packet import PacketDecoder
 from sim.faults import Fault
 from sim.wire.wire import Wire, WireSettings
 from tests.support.servo_bench import Bench, spec
-from tests.support.sizes import examples
+from tests.support.sizes import examples, few_and_long
 
 THREE = ("XM430-W350",) * 3
 ROWS = [(2, 132, 4), (1, 132, 4), (3, 132, 4)]
@@ -52,7 +52,7 @@ def test_twins_that_say_the_same_are_heard_as_one(kind: str) -> None:
 
 @settings(max_examples=examples(20))
 @given(tick=st.integers(0, 4095))
-@pytest.mark.parametrize("kind", [k for k in READS if "fast" not in k])
+@pytest.mark.parametrize("kind", few_and_long(["read", "sync"], [k for k in READS if "fast" not in k]))
 def test_of_twins_that_differ_the_and_is_heard(kind: str, tick: int) -> None:
     heard = with_a_twin(tick).send(READS[kind])
     assert heard == bytes(x & y for x, y in zip(alone().send(READS[kind]), alone(tick).send(READS[kind]), strict=True))

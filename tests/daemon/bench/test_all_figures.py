@@ -130,6 +130,7 @@ def test_what_fails_or_hangs_is_reported_and_the_rest_goes_on(table: Path, tmp_p
     assert "Of 5 marks 2 are met, 1 are missed, 2 were not measured here." in page
 
 
+@pytest.mark.long
 def test_a_second_run_makes_what_is_missing_alone(table: Path, tmp_path: Path) -> None:
     out = tmp_path / "out"
     bench_all(out, ["last"], table_file=table)
@@ -143,6 +144,7 @@ def test_a_second_run_makes_what_is_missing_alone(table: Path, tmp_path: Path) -
     assert not calls(tmp_path, "hangs")
 
 
+@pytest.mark.long
 def test_an_interrupted_run_keeps_what_it_has_and_ends_what_it_runs(table: Path, tmp_path: Path) -> None:
     out = tmp_path / "out"
     code = (
@@ -161,6 +163,7 @@ def test_an_interrupted_run_keeps_what_it_has_and_ends_what_it_runs(table: Path,
     assert len(calls(tmp_path, "quick-one")) == 1 and len(calls(tmp_path, "last")) == 1
 
 
+@pytest.mark.long
 def test_other_options_code_or_machine_are_measured_again(table: Path, tmp_path: Path) -> None:
     out = tmp_path / "out"
     bench_all(out, ["quick-one"], quick=True, table_file=table)

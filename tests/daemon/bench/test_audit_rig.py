@@ -35,6 +35,7 @@ class Drawn:
         return float(self._random.choice(values))
 
 
+@pytest.mark.long
 def test_a_calm_run_reports_goals_and_nothing_else():
     rig = AuditRig(ROBOT)
     rig.make_ready()
@@ -51,7 +52,7 @@ def test_a_calm_run_reports_goals_and_nothing_else():
     } == {0}
 
 
-@pytest.mark.parametrize("case", few_and_long([1, 2], [0, 3, 9]))
+@pytest.mark.parametrize("case", few_and_long([2], [0, 1, 3, 9]))
 def test_what_makes_no_sense_breaks_nothing(case):
     """Requests at random, noise, frames that are not finite, frames in reverse, and none of these."""
     rig = AuditRig(ROBOT)
@@ -70,6 +71,7 @@ def test_what_breaks_is_repaired_and_counted():
     assert rig.finish()["repairs"] == 1
 
 
+@pytest.mark.long
 def test_what_cannot_be_repaired_is_said():
     rig = AuditRig(ROBOT, (Fault("silent", servo_id=ROBOT.servo_ids[0]),))
     with pytest.raises(RuntimeError, match="after ten repairs"):

@@ -36,6 +36,7 @@ def test_lag_and_way_of_a_servo_that_is_late_and_weak():
     assert np.abs(found.error_rad[:, 0]).max() > 0.1
 
 
+@pytest.mark.long
 def test_a_wave_is_seen_in_what_the_servos_measured(motion):
     """Until now figures ended at the path: whether servos under load follow it was taken for granted."""
     robot = Executed(Retargeter(load_robot("op3")))

@@ -20,6 +20,7 @@ def _clip(robot_name, name, frames, seed=3):
     return retargeter, retargeter.poses(read_human(motion)), retargeter.retarget(motion)
 
 
+@pytest.mark.long
 def test_the_figures_say_how_near_the_path_is_to_the_best():
     """Marks in degrees were missed on lively recordings whatever the method: servos of that speed cost what they cost.
 

@@ -102,7 +102,7 @@ def test_a_machine_that_is_held_up_is_no_brown_out():
         assert isinstance(bus, ServoBus)
 
         def look(follow) -> None:
-            while clock.now_s() < 1.0:
+            while clock.now_s() < 0.7:
                 follow()
 
         calibrate(bus, OP3, wait_zero=look, wait_range=look)

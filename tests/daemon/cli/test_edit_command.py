@@ -11,8 +11,10 @@ from daemon.cli import main
 from daemon.generator.generated import arrays_of
 from daemon.generator.messages import EditMessage, GenerateMessage, UnfitRequestError
 from daemon.generator.service import EngineService
+from mmm_core.generate import shown_edits
 from mmm_core.motion.motion import load_npz
 from tests.support.shipped import loaded_once, shipped_engine
+from tests.support.sizes import few_and_long
 
 WRIST, SHOULDER = 20, 16
 """Joints of the left arm."""
@@ -47,8 +49,11 @@ def test_a_motion_grows_at_its_end(wave: Path, tmp_path: Path) -> None:
     assert len(load_npz(out).joints_m) == 160
 
 
-def test_what_is_not_reached_ends_with_status_1(wave: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_what_is_not_reached_ends_with_status_1(
+    wave: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
     """The nearest motion is written, so that it can be looked at."""
+    monkeypatch.setattr(shown_edits, "CANDIDATES", 1)
     out = tmp_path / "near.npz"
     nod = tmp_path / "nod.npz"
     assert main(["generate", "nod twice", "--seconds", "3", "--out", str(nod)]) == 0
@@ -105,7 +110,10 @@ def test_a_bad_scene_is_named_by_its_line(tmp_path: Path, capsys: pytest.Capture
     assert "line 2" in capsys.readouterr().err
 
 
-@pytest.mark.parametrize(("names", "bone"), [("cmu", "LowerBack"), ("mixamo", "mixamorig:Spine2"), ("mmmd", "spine1")])
+@pytest.mark.parametrize(
+    ("names", "bone"),
+    few_and_long([("cmu", "LowerBack")], [("mixamo", "mixamorig:Spine2"), ("mmmd", "spine1")]),
+)
 def test_bvh_is_written_with_the_names_that_are_asked_for(wave: Path, tmp_path: Path, names: str, bone: str) -> None:
     out = ["--out", str(tmp_path / "m.npz"), "--bvh", str(tmp_path / "m.bvh"), "--bvh-names", names]
     assert main(["generate", "nod", "--seconds", "2", *out]) == 0

@@ -23,6 +23,7 @@ from daemon.client import RefusedError
 from daemon.dynamixel.registers.models import MODELS
 from retarget.robot.loading import load_robot
 from tests.support.harness import MMMD, START_TIMEOUT_S, RunningDaemon
+from tests.support.sizes import few_and_long
 
 WITHOUT_TORCH = """\
 import sys
@@ -42,6 +43,7 @@ def mmmd(*arguments: str, text: str | None = None) -> subprocess.CompletedProces
     return subprocess.run([*MMMD, *arguments], input=text, capture_output=True, text=True, timeout=60, check=False)
 
 
+@pytest.mark.long
 @pytest.mark.realtime
 def test_a_machine_without_pytorch_runs_gestures_and_says_what_is_missing(tmp_path, monkeypatch):
     """`mmmd run` refused to start, although gestures, look, replay and stream need no PyTorch."""
@@ -126,7 +128,9 @@ def test_what_has_to_be_typed_is_whole_in_every_table(width, capsys):
         assert set(names) <= words, set(names) - words
 
 
-@pytest.mark.parametrize("arguments", [[], ["--help"], ["say", "--help"], ["robot", "list"]], ids=" ".join)
+@pytest.mark.parametrize(
+    "arguments", few_and_long([["--help"]], [[], ["say", "--help"], ["robot", "list"]]), ids=" ".join
+)
 def test_a_reader_that_has_gone_is_no_reason_to_complain(arguments):
     """`mmmd | head` ended in a traceback."""
     read_end, write_end = os.pipe()

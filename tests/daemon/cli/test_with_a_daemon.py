@@ -30,6 +30,7 @@ def test_the_session_of_the_readme(running):
         assert f"is {after}" in result.stdout, result.stdout
 
 
+@pytest.mark.long
 def test_json_of_the_commands(running):
     status = json.loads(running.mmmd("status", "--json").stdout)
     assert status["type"] == "state" and status["v"] == 1 and status["robot"] == "reference"
@@ -51,6 +52,7 @@ def mmmd(*arguments: str, text: str | None = None) -> subprocess.CompletedProces
     return subprocess.run([*MMMD, *arguments], input=text, capture_output=True, text=True, timeout=60, check=False)
 
 
+@pytest.mark.long
 def test_a_port_in_use_is_status_1_so_that_a_service_tries_again(running):
     again = mmmd("run", *running.at, "--stream", running.endpoints.stream)
     assert again.returncode == 1 and running.endpoints.cmd in again.stderr and "already in use" in again.stderr
@@ -84,6 +86,7 @@ def test_a_fault_is_left_by_reset_and_then_arm(running):
         assert "(needs `mmmd arm`)" in " ".join(running.mmmd("status").stdout.split())
 
 
+@pytest.mark.long
 def test_a_stream_of_wrong_joints_alone_is_status_1(running):
     with running.armed():
         done = mmmd("stream", *running.at, text='{"nojoint": 1}\n' * 3)

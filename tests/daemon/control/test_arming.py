@@ -68,7 +68,7 @@ def torque_after_estop_s(robot: str, kind: BusRequest, n_torque: int) -> float:
         return off_s - asked_s[0]
 
 
-@pytest.mark.parametrize("robot", ["reference", "op3", "poppy_torso"])
+@pytest.mark.parametrize("robot", few_and_long(["op3"], ["reference", "poppy_torso"]))
 @pytest.mark.parametrize("kind", [E, BusRequest.ESTOP_HOLD])
 def test_an_estop_while_torque_comes_on_is_carried_out_within_two_cycles(robot, kind):
     """Torque comes on servo by servo: the e-stop waited until all had it and their watchdogs were set, up to 85 ms."""
@@ -90,7 +90,10 @@ def test_a_front_that_dies_while_it_arms_leaves_the_robot_limp(monkeypatch):
         assert r.state is BusState.LIMP
 
 
-@pytest.mark.parametrize(("item", "value"), [("drive_mode", 1), ("operating_mode", 1), ("max_position_limit", 2100)])
+@pytest.mark.parametrize(
+    ("item", "value"),
+    few_and_long([("operating_mode", 1)], [("drive_mode", 1), ("max_position_limit", 2100)]),
+)
 def test_a_setting_changed_since_the_start_is_found_before_torque(item, value):
     with rig() as r:
         r.arm()

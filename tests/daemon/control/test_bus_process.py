@@ -72,6 +72,7 @@ def servos(tmp_path):
         yield server
 
 
+@pytest.mark.long
 def test_it_says_when_it_has_the_robot_and_what_rights_it_got(started):
     bus = started("sim://")
     bus.wait_for(lambda: bus.link.readiness is Readiness.READY and bus.link.cycles.count > 3)
@@ -84,6 +85,7 @@ def test_it_says_when_it_has_the_robot_and_what_rights_it_got(started):
     assert bus.process.wait(10) == 0
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("url", "says", "readiness"),
     [
@@ -150,6 +152,7 @@ def test_killed_while_armed_the_servos_stop_by_their_watchdog(started, servos, t
     assert not any(s.torque for s in servos.bus.servos.values())
 
 
+@pytest.mark.long
 def test_frozen_while_armed_it_comes_back_in_a_named_fault(started, servos, tmp_path):
     bus = started(f"dxl://{tmp_path}/servos?baud=1000000")
     bus.wait_for(lambda: bus.link.readiness is Readiness.READY)
@@ -164,6 +167,7 @@ def test_frozen_while_armed_it_comes_back_in_a_named_fault(started, servos, tmp_
     assert servos.bus.audit.report()["violations"] == 0, servos.bus.audit.report()["details"]
 
 
+@pytest.mark.long
 def test_sigterm_leaves_the_servos_without_torque(started, servos, tmp_path: Path):
     bus = started(f"dxl://{tmp_path}/servos?baud=1000000")
     bus.wait_for(lambda: bus.link.readiness is Readiness.READY)

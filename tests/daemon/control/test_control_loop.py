@@ -31,7 +31,7 @@ def test_nothing_moves_because_a_process_started():
         assert r.records[-1]["valid"].all(), "but it is measured"
 
 
-@pytest.mark.parametrize("name", few_and_long(["reference", "toddlerbot"], ROBOTS))
+@pytest.mark.parametrize("name", few_and_long(["reference"], ROBOTS))
 @pytest.mark.parametrize("seed", [0, *(pytest.param(seed, marks=pytest.mark.soak) for seed in (1, 2))])
 def test_arming_pins_then_goes_slowly_to_rest(name, seed):
     """From any pose in which it is not in itself; those are in `test_park.py`."""
@@ -113,16 +113,16 @@ def test_a_park_may_stay_in_the_park_pose_before_it_goes_limp():
     """A lease that fell silent leads there; a plain park, also while it stays, goes limp at once."""
     with rig() as r:
         r.arm()
-        r.link.request(BusRequest.PARK, stay_s=3.0)
+        r.link.request(BusRequest.PARK, stay_s=1.5)
         r.cycle()
         r.until(BusState.LIMP)
         stood = [
             i for i, k in enumerate(r.records) if k["torque"] and not k["velocity_rad_s"].any() and k["state"] == 5
         ]
-        assert len(stood) / r.robot.bus.rate_hz == pytest.approx(3.0, abs=0.2)
+        assert len(stood) / r.robot.bus.rate_hz == pytest.approx(1.5, abs=0.2)
         r.arm()
         r.link.request(BusRequest.PARK, stay_s=60.0)
-        r.cycle(400)
+        r.cycle(200)
         assert r.state is BusState.PARKING and all(r.torque)
         r.link.request(BusRequest.PARK)
         r.cycle()

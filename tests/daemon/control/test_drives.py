@@ -4,6 +4,7 @@ import shutil
 from pathlib import Path
 
 import numpy as np
+import pytest
 
 from retarget.robot.loading import ROBOTS_DIR, load_robot
 from tests.support.rig import rig, swing
@@ -31,6 +32,7 @@ def test_two_servos_of_a_joint_turn_against_each_other(tmp_path: Path):
         r.assert_limits_kept()
 
 
+@pytest.mark.long
 def test_a_waist_differential_turns_both_servos_alike():
     """ToddlerBot: gears, a linkage and a differential, through the packets and back."""
     robot = load_robot("toddlerbot")

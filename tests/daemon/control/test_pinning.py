@@ -27,7 +27,7 @@ class Pushed:
             self._servo.position_tick = self._servo.position_tick + self._ticks
 
 
-@pytest.mark.parametrize("times", [1, 2])
+@pytest.mark.parametrize("times", few_and_long([1], [1, 2]))
 def test_a_joint_that_is_moved_while_goals_are_pinned_is_pinned_anew(times):
     with rig() as r:
         hand = Pushed(r, 60, times)
@@ -79,7 +79,7 @@ def test_a_servo_that_trips_while_pinned_is_named_and_none_gets_torque(name: str
         assert r.sim.audit.report()["violations"] == 0
 
 
-@pytest.mark.parametrize("probability", [0.05, 0.3])
+@pytest.mark.parametrize("probability", few_and_long([0.3], [0.05, 0.3]))
 def test_a_joint_that_sinks_during_pinning_is_pinned_where_it_hangs(probability):
     """Answers are lost, so pinning takes long enough for an arm to sink: torque came on over a goal that the joint had left."""
     with rig("reference", Fault("drop", 0.0, 1.5, probability)) as r:
@@ -141,9 +141,9 @@ def test_a_servo_without_power_gets_no_goal_and_the_others_come_to_rest():
 
 
 def test_answers_lost_now_and_then_withhold_no_goal():
-    with rig("reachy_2021", Fault("drop", start_s=6.0, probability=0.05)) as r:
+    with rig("reachy_2021", Fault("drop", start_s=3.0, probability=0.05)) as r:
         r.arm()
-        for _ in range(4):
+        for _ in range(2):
             r.push(swing(r.robot, 1.5))
             r.cycle(85)
             assert r.state is BusState.HOLDING, r.link.text
@@ -151,7 +151,7 @@ def test_answers_lost_now_and_then_withhold_no_goal():
         r.assert_limits_kept()
 
 
-@pytest.mark.parametrize("limit", [200, 600])
+@pytest.mark.parametrize("limit", few_and_long([200], [200, 600]))
 def test_a_servo_of_a_lower_pwm_limit_is_armed_and_ends_at_its_own_limit(limit):
     """Of limit 200 it could not be armed; of 600 the ramp ended at 568, for later steps were refused."""
     with rig() as r:

@@ -24,7 +24,7 @@ def test_a_reset_and_an_arm_that_came_before_an_e_stop_do_not_undo_it():
         assert [BusState(int(r.cycle()["state"])) for _ in range(3)] == [BusState.ESTOP, BusState.LIMP, BusState.ARMING]
 
 
-@pytest.mark.parametrize("state", ["arming", "holding", "playing", "stopping", "parking"])
+@pytest.mark.parametrize("state", few_and_long(["arming", "playing", "parking"], ["holding", "stopping"]))
 def test_e_stop_cuts_torque_in_its_cycle_and_is_latched(state):
     with rig() as r:
         if state == "arming":
@@ -52,7 +52,7 @@ def test_e_stop_cuts_torque_in_its_cycle_and_is_latched(state):
         r.assert_limits_kept()
 
 
-@pytest.mark.parametrize("state", ["arming", "holding", "playing", "stopping", "parking"])
+@pytest.mark.parametrize("state", few_and_long(["arming", "playing"], ["holding", "stopping", "parking"]))
 def test_an_e_stop_that_holds_brakes_within_limits_and_the_second_cuts(state):
     with rig() as r:
         if state == "arming":
@@ -115,7 +115,7 @@ def test_what_an_e_stop_holds_goes_limp_when_nobody_is_there(monkeypatch):
         assert r.state is BusState.ESTOP and not any(r.torque) and r.streamer.made_limp
 
 
-@pytest.mark.parametrize("state", ["limp", "arming", "holding", "playing", "parking"])
+@pytest.mark.parametrize("state", few_and_long(["arming", "playing"], ["limp", "holding", "parking"]))
 def test_torque_off_brakes_within_limits_and_goes_limp_where_it_stands(state):
     with rig() as r:
         if state == "arming":
@@ -165,7 +165,7 @@ def test_an_e_stop_while_unplugged_is_carried_out_when_the_bus_is_back():
 @pytest.mark.parametrize("request_", few_and_long([BusRequest.ESTOP], [BusRequest.PARK]))
 def test_a_servo_that_heard_no_torque_off_is_told_again_when_it_hears(request_):
     """A loose cable while the robot goes limp: the five packets that nobody answers were all lost on one servo."""
-    deaf = Fault("deaf", start_s=4.0, end_s=12.0, servo_id=5)
+    deaf = Fault("deaf", start_s=4.0, end_s=8.0, servo_id=5)
     with rig("reference", deaf, slow_every=10) as r:
         r.cycle(3)
         r.arm()
@@ -173,8 +173,8 @@ def test_a_servo_that_heard_no_torque_off_is_told_again_when_it_hears(request_):
         r.link.request(request_)
         r.until(BusState.ESTOP, BusState.LIMP)
         r.cycle(20)
-        if r.clock.true_s < 12.0:
+        if r.clock.true_s < 8.0:
             assert [i for i, s in r.sim.servos.items() if s.torque] == [5]
-        r.cycle(1400)
+        r.cycle(700)
         assert not any(r.torque), "it is limp once it hears again"
         r.assert_limits_kept()

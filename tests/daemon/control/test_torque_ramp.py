@@ -11,6 +11,7 @@ from daemon.shared_memory.bus_link import BusRequest, BusState
 from sim.faults import Fault
 from sim.servos.servo_protocol1 import OVERLOAD_ERROR, SimServo1
 from tests.support.rig import rig
+from tests.support.sizes import few_and_long
 
 SERVOS = {"poppy_torso": 41, "op2": 5, "reachy_2021": 13, "op3": 5, "toddlerbot": 16}
 RAMP_S = 0.65
@@ -29,11 +30,14 @@ def torque_on_s(name: str) -> float:
 @pytest.mark.parametrize(
     ("name", "share"),
     [
-        pytest.param(name, share, marks=() if k % 3 == 0 else pytest.mark.soak)
+        pytest.param(name, share, marks=pytest.mark.long if k % 3 == 0 else pytest.mark.soak)
         for name in ("poppy_torso", "op2")
         for k, share in enumerate(np.linspace(0.0, 1.0, 10).round(3).tolist())
     ]
-    + [(name, share) for name in ("reachy_2021", "op3", "toddlerbot") for share in (0.1, 0.5)],
+    + few_and_long(
+        [("poppy_torso", 0.5), ("op2", 0.1)],
+        [(name, share) for name in ("reachy_2021", "op3", "toddlerbot") for share in (0.1, 0.5)],
+    ),
 )
 def test_a_servo_that_trips_anywhere_in_the_ramp_stays_limp_and_is_named(name: str, share: float) -> None:
     """Writing torque_limit clears the alarm of a protocol 1.0 servo, and the next goal switched its torque on again."""
@@ -59,7 +63,7 @@ def test_a_servo_that_trips_anywhere_in_the_ramp_stays_limp_and_is_named(name: s
         assert r.sim.audit.report()["violations"] == 0, r.sim.audit.report()["details"]
 
 
-@pytest.mark.parametrize("name", SERVOS)
+@pytest.mark.parametrize("name", few_and_long(["op2", "poppy_torso"], SERVOS))
 def test_in_a_fault_and_a_held_e_stop_the_ramp_stands_still(name: str) -> None:
     """Effort rises in the armed states alone: whoever holds in a fault holds with what he had."""
     for request in (BusRequest.ESTOP_HOLD, None):
@@ -80,7 +84,7 @@ def test_in_a_fault_and_a_held_e_stop_the_ramp_stands_still(name: str) -> None:
             assert all(r.torque) and r.sim.audit.report()["violations"] == 0
 
 
-@pytest.mark.parametrize("name", ["poppy_torso", "reachy_2021"])
+@pytest.mark.parametrize("name", few_and_long(["reachy_2021"], ["poppy_torso", "reachy_2021"]))
 def test_a_tripped_servo_of_protocol_1_gets_no_goal_in_the_fault(name: str) -> None:
     """A goal switches torque on by itself: were the alarm over by then, the servo would come back in a latched fault."""
     with rig(name) as r:

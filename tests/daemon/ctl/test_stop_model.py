@@ -191,7 +191,11 @@ def settled(w: World) -> World:
 
 
 @pytest.mark.parametrize(
-    "asked", [(E,), (E, E), (S, E), (A, E), (R, A, E), (E, R, A), (E, R, E), (A, E, R), (S, A, E)],
+    "asked",
+    [
+        (E,), (E, E), (S, E), (A, E),
+        *(pytest.param(asked, marks=pytest.mark.long) for asked in ((E, R, A), (R, A, E), (E, R, E), (A, E, R), (S, A, E))),
+    ],
     ids=lambda kinds: "-".join(k.name.lower() for k in kinds),
 )  # fmt: skip
 def test_from_every_reachable_state_an_estop_reaches_torque_off(asked):
@@ -207,7 +211,11 @@ def test_from_every_reachable_state_an_estop_reaches_torque_off(asked):
             assert not end.torque and end.latched, f"torque after the e-stop: {w} -> {end}"
 
 
-@pytest.mark.parametrize("asked", [(E,), (A, E), (R, A, E)], ids=lambda kinds: "-".join(k.name.lower() for k in kinds))
+@pytest.mark.parametrize(
+    "asked",
+    [(E,), (A, E), pytest.param((R, A, E), marks=pytest.mark.long)],
+    ids=lambda kinds: "-".join(k.name.lower() for k in kinds),
+)
 def test_a_report_never_says_more_than_was_done_and_no_older_undoes_it(asked):
     for w in reachable(World(left=asked)):
         done = [n for n in w.estops if words_of(w).carried_out(Asker.CTL, Asked(E, n))]

@@ -49,6 +49,7 @@ def rate_and_valid(bus: ServoBus, clock: VirtualClock, cycles: int = 4000) -> tu
     return cycles / (clock.now_s() - start_s), valid / cycles / N
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("share", "rate", "valid"), few_and_long([(0.001, 0.97, 0.98)], [(0.01, 0.75, 0.9)]))
 def test_lost_parts_of_fast_answers_cost_their_cycle_only(share: float, rate: float, valid: float) -> None:
     """One in a thousand lost 12 % of the rate: after each, 25 cycles went by the slower read."""

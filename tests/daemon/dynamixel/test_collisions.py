@@ -16,6 +16,7 @@ from sim.clock import VirtualClock
 from sim.faults import Fault, FaultSchedule
 from sim.port import SimPort
 from sim.world import World
+from tests.support.sizes import few_and_long
 
 ROBOT, TWIN = load_robot("reference"), 7
 ROW = ROBOT.servo_ids.index(TWIN)
@@ -55,7 +56,7 @@ def test_one_question_says_that_answers_came_garbled_not_that_none_came() -> Non
     assert bus.read_item(TWIN, "led") == 0, "the same bytes at the same time"
 
 
-@pytest.mark.parametrize("firmware", [PLAIN, FAST])
+@pytest.mark.parametrize("firmware", few_and_long([FAST], [PLAIN, FAST]))
 def test_a_twin_that_comes_while_the_robot_runs_is_named_and_its_loss_too(firmware: int) -> None:
     """It was said to be silent, and nothing else; by fast reads what both said at once was taken for a position."""
     bus, servos, clock = with_a_twin(firmware=firmware)
@@ -79,7 +80,7 @@ def test_a_twin_that_comes_while_the_robot_runs_is_named_and_its_loss_too(firmwa
     assert BusEventKind.RETURNED in [e.kind for e in bus.take_events()]
 
 
-@pytest.mark.parametrize("kind", ["silent", "drop"])
+@pytest.mark.parametrize("kind", few_and_long(["silent"], ["silent", "drop"]))
 def test_a_servo_that_says_nothing_is_not_taken_for_two(kind: str) -> None:
     bus, servos, clock = with_a_twin(Fault(kind, start_s=0.5, servo_id=TWIN))
     servos.on_wire.pop()

@@ -63,7 +63,13 @@ def test_old_firmware_is_not_even_asked_for_it(firmware: int, fast: bool) -> Non
 
 
 @pytest.mark.parametrize(
-    "names", [X20, ("MX-28",) * 6, ("MX-64-2",) * 6, ("AX-12A",) * 4], ids=["fast", "mx1", "sync", "ax"]
+    "names",
+    [
+        pytest.param(X20, id="fast", marks=pytest.mark.long),
+        pytest.param(("MX-28",) * 6, id="mx1", marks=pytest.mark.long),
+        pytest.param(("MX-64-2",) * 6, id="sync"),
+        pytest.param(("AX-12A",) * 4, id="ax", marks=pytest.mark.long),
+    ],
 )
 def test_a_dead_servo_costs_only_itself_and_almost_nothing_in_quarantine(names: tuple[str, ...]) -> None:
     bus, far, clock = bus_of(*names)

@@ -11,6 +11,7 @@ from daemon.errors import BusMismatchError, CommandError, LinkLostError, LinkTim
 from sim.faults import Fault, FaultSchedule
 from tests.support.bus_rig import bus_rig
 from tests.support.servo_emulator import fake, spec
+from tests.support.sizes import few_and_long
 
 
 def test_an_exchange_writes_every_goal_and_reads_every_servo() -> None:
@@ -46,7 +47,7 @@ def test_one_silent_servo_costs_itself_only_and_keeps_its_last_value() -> None:
     assert reading.age_cycles[row] == 1
 
 
-@pytest.mark.parametrize("kind", ["drop", "corrupt"])
+@pytest.mark.parametrize("kind", few_and_long(["corrupt"], ["drop", "corrupt"]))
 def test_lost_and_broken_replies_lose_only_themselves(kind: str) -> None:
     rig = bus_rig(Fault(kind, probability=0.05))
     answered = np.zeros(16, int)

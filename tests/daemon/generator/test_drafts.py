@@ -53,6 +53,7 @@ def test_the_drafts_of_several_texts_come_before_their_motions(endpoint):
     assert came == [(text, "draft") for text in texts] + [(text, "whole") for text in texts]
 
 
+@pytest.mark.long
 def test_many_drafts_do_not_starve_the_motions(endpoint):
     """When many texts come at once, the first motions are made before the last drafts."""
     peer = KinematicGenerator(endpoint)

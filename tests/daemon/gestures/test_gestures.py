@@ -16,6 +16,7 @@ from mmm_core.motion.posture_features import posture_features
 from retarget.pipeline import Retargeter
 from retarget.robot.loading import load_robot
 from tests.support.kinematic import raised_arm
+from tests.support.sizes import few_and_long
 
 CLIPS = load_clips(SHIPPED)
 P = posture_of(raised_arm("raise", 1.5, 1.3, "right"))
@@ -40,7 +41,7 @@ def test_shipped_gestures_start_and_end_near_standing_and_name_mirrors():
         assert clip.marks == marks_of(clip.posture) or "mirror image" in clip.source
 
 
-@pytest.mark.parametrize("robot_name", ["reference", "op3"])
+@pytest.mark.parametrize("robot_name", few_and_long(["reference"], ["reference", "op3"]))
 def test_every_fourth_shipped_gesture_fits_the_robots(robot_name):
     """Within limits and clear of itself, by the retargeter's own report; the audit bench plays all of them."""
     retargeter = Retargeter(load_robot(robot_name))

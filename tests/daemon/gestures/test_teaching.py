@@ -62,7 +62,7 @@ def may_be_shown(retargeter: Retargeter, taught: Taught) -> None:
     assert not retargeter.contact.along(path.control_rad).any()
 
 
-@settings(max_examples=examples(25), deadline=None)
+@settings(max_examples=examples(12), deadline=None)
 @given(names, seeds, st.floats(0.3, 8.0))
 def test_whatever_a_hand_did_the_robot_may_show_it(name, seed, speed):
     """At any speed, through its own body and beyond its stops: within every limit, and clear of itself."""

@@ -16,6 +16,7 @@ from daemon.host.parent import PARENT_VARIABLE
 from daemon.shared_memory.bus_link import BusLink, BusRequest, BusState
 from retarget.robot.loading import load_robot
 from tests.support.rig import rig
+from tests.support.sizes import few_and_long
 
 _FRONT_KILLED_AT_ONCE = """
 import os, subprocess, sys
@@ -34,7 +35,7 @@ def has_ended(pid: int) -> bool:
 
 
 @pytest.mark.realtime
-@pytest.mark.parametrize("module", ["daemon.control.process", "daemon.recording.recorder"])
+@pytest.mark.parametrize("module", few_and_long(["daemon.control.process"], ["daemon.recording.recorder"]))
 def test_a_child_whose_front_was_killed_while_it_started_ends(module: str, tmp_path: Path) -> None:
     """It asked for its parent's id once it ran, got that of whoever inherits orphans, and kept the port for ever."""
     robot = load_robot("reference")

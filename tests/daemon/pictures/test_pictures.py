@@ -23,6 +23,7 @@ from mmm_core.motion.skeleton import JOINT_NAMES
 from retarget.robot.loading import load_robot
 from retarget.robot.robot import RobotModel
 from retarget.robot.ticks import JointServoMap
+from tests.support.sizes import few_and_long
 
 SIZE = (240, 200)
 SHIPPED = Path(__file__).parents[3] / "daemon" / "gestures" / "shipped.npz"
@@ -88,6 +89,7 @@ def test_a_raised_left_arm_is_seen_higher(robot: RobotModel) -> None:
     assert np.nonzero(up)[0].mean() < np.nonzero(down)[0].mean() - 10
 
 
+@pytest.mark.long
 def test_a_ghost_of_the_goal_is_drawn_beside_what_is_measured(robot: RobotModel) -> None:
     with Scene(robot, SIZE, person=False) as scene:
         alone = scene.draw(VIEWS["front"], robot.rest_rad)
@@ -105,6 +107,7 @@ def test_person_and_robot_stand_beside_each_other(robot: RobotModel, wave: Motio
     assert changed[SIZE[0] // 2 :].sum() > 20 and not changed[: SIZE[0] // 3].any()
 
 
+@pytest.mark.long
 def test_the_nose_shows_where_the_person_looks(wave: Motion) -> None:
     joints_m = wave.joints_m[0].astype(float)
     with Scene(None, SIZE) as scene:
@@ -142,7 +145,7 @@ def test_a_sheet_goes_from_the_first_frame_to_the_last(n: int) -> None:
     assert len(instants(n)) == INSTANTS and instants(n)[0] == 0 and instants(n)[-1] == n - 1
 
 
-@pytest.mark.parametrize("suffix", [".gif", ".mp4"])
+@pytest.mark.parametrize("suffix", few_and_long([".mp4"], [".gif", ".mp4"]))
 def test_a_film_has_every_frame_and_its_length(tmp_path: Path, robot: RobotModel, wave: Motion, suffix: str) -> None:
     shown = cut(of_motion(wave, robot, "wave"), 20, 26)
     file = tmp_path / f"x{suffix}"

@@ -23,6 +23,7 @@ from retarget.errors import MotionError
 from retarget.path.safety_filter import SafetyFilter
 from tests.support.front_rig import FrontRig, front_rig
 from tests.support.kinematic import raised_arm
+from tests.support.sizes import few_and_long
 
 ACCEPTED = partial(
     Accepted, plan_id=1, text="", status="accepted", understood="", reason="", scope_score=1.0, duration_s=1.0, generate_ms=1.0
@@ -121,7 +122,7 @@ def test_a_motion_is_played_to_its_end_and_reported():
         front.bus.assert_limits_kept()
 
 
-@pytest.mark.parametrize("late_cycles", [0, 3, 25])
+@pytest.mark.parametrize("late_cycles", few_and_long([3], [0, 3, 25]))
 def test_a_command_takes_over_however_long_its_chunk_takes(late_cycles):
     with front_rig() as front:
 
@@ -152,7 +153,7 @@ def test_a_command_that_is_called_off_leaves_the_running_one_alone():
         front.run(work)
 
 
-@pytest.mark.parametrize("stream", [False, True])
+@pytest.mark.parametrize("stream", few_and_long([True], [False, True]))
 def test_a_motion_that_fits_no_robot_leaves_the_running_one_alone(stream):
     with front_rig() as front:
 
@@ -199,6 +200,7 @@ def test_a_motion_takes_the_place_of_its_preview():
         front.bus.assert_limits_kept()
 
 
+@pytest.mark.long
 def test_a_gaze_turns_the_head_of_the_motion_and_of_the_held_pose():
     with front_rig() as front:
         yaw = front.bus.robot.joint_with_role("head_yaw")

@@ -106,8 +106,9 @@ actions = st.lists(
 )  # fmt: skip
 
 
+@pytest.mark.parametrize("name", few_and_long(["reference"], ["toddlerbot"]))
 @settings(max_examples=examples(12), deadline=None)
-@given(name=st.sampled_from(["reference", "toddlerbot"]), actions=actions)
+@given(actions=actions)
 def test_no_stream_breaks_a_limit_or_touches(name, actions):
     """Random, jumping, adversarial and interrupted streams, a front that stalls, stops in the middle, a slowed robot."""
     with streaming(name) as s:
@@ -160,6 +161,7 @@ def test_a_target_moves_the_robot_in_the_next_cycle_and_is_met_exactly():
         s.assert_clean()
 
 
+@pytest.mark.long
 def test_silence_brakes_and_holds_and_the_next_target_goes_on():
     with streaming() as s:
         far = reach(s.robot, 1.0)
@@ -207,9 +209,10 @@ def test_release_at_rest_completes_as_well():
         assert s.plan.complete and s.plan.played
 
 
-def test_it_holds_before_the_body_and_says_so():
-    with streaming("toddlerbot") as s:
-        body = BODIES["toddlerbot"]
+@pytest.mark.parametrize("name", few_and_long(["reference"], ["toddlerbot"]))
+def test_it_holds_before_the_body_and_says_so(name):
+    with streaming(name) as s:
+        body = BODIES[name]
         poses = np.random.default_rng(3).uniform(
             s.robot.position_min_rad, s.robot.position_max_rad, (2000, s.robot.n_joints)
         )
@@ -222,6 +225,7 @@ def test_it_holds_before_the_body_and_says_so():
         s.assert_clean()
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("hz", few_and_long([15], [40, 100, 300]))
 def test_a_smooth_stream_is_followed_smoothly_at_any_rate(hz):
     """Between messages the robot moves on: no joint stops and starts again with each of them."""

@@ -71,6 +71,7 @@ def recording(tmp_path):
     made.close()
 
 
+@pytest.mark.long
 def test_sigterm_finishes_the_log(recording, run):
     recording.publish(run[1])
     recording.events.send_multipart([b"v1/event", msgspec.json.encode({"type": "done", "plan_id": 7})])
@@ -95,6 +96,7 @@ def test_killed_it_leaves_a_log_that_reads_to_its_last_chunk(recording, run):
     assert [c.goal_tick for c in log.cycles] == [tuple(r["goal_tick"]) for r in run[1]]
 
 
+@pytest.mark.long
 def test_a_stopped_recorder_slows_nobody_and_its_losses_are_counted(recording, run):
     """Frozen while the ring goes round: publishing goes on, and the log says by its numbers what is missing."""
     recording.publish(run[1][:5])
@@ -114,6 +116,7 @@ def test_a_stopped_recorder_slows_nobody_and_its_losses_are_counted(recording, r
     assert int(log.metadata["cycles_dropped"]) == 6000 - len(numbers)
 
 
+@pytest.mark.long
 def test_a_file_that_cannot_be_written_ends_recording_alone(tmp_path):
     link = BusLink.create(load_robot("reference").n_joints)
     try:
@@ -133,6 +136,7 @@ def test_a_file_that_cannot_be_written_ends_recording_alone(tmp_path):
     assert "goes on without a log" in ended.stderr and "Traceback" not in ended.stderr
 
 
+@pytest.mark.long
 def test_a_full_disk_ends_recording_alone():
     if not Path("/dev/full").exists():
         pytest.skip("needs /dev/full")

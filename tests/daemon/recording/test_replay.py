@@ -19,6 +19,7 @@ from sim.port import SimPort
 from tests.support.harness import slow_reference
 from tests.support.rig import rig, swing
 from tests.support.robots import slow
+from tests.support.sizes import few_and_long
 
 
 def write(path: Path, robot, records, drop=()) -> Path:
@@ -103,6 +104,7 @@ def test_twice_replayed_is_the_same_again(log_file):
     assert play(read_log(log_file))[2] == play(read_log(log_file))[2]
 
 
+@pytest.mark.long
 def test_a_changed_goal_is_found_and_named(log_file):
     log = read_log(log_file)
     changed = [c for c in log.cycles if c.torque][50]
@@ -176,13 +178,14 @@ def test_interrupted_it_leaves_no_torque(log_file):
     assert not any(s.torque for s in sim.servos.values())
 
 
-@pytest.mark.parametrize("kind", ["trip", "unplug"])
+@pytest.mark.parametrize("kind", few_and_long(["trip"], ["trip", "unplug"]))
 def test_a_fault_on_the_way_ends_the_replay(log_file, kind):
     with pytest.raises(ReplayFaultError, match="cycle") as caught:
         play(read_log(log_file), Fault(kind, start_s=2.0, servo_id=11 if kind == "trip" else None))
     assert caught.value.exit_status == 3
 
 
+@pytest.mark.long
 def test_the_command_gives_its_figures_as_json(log_file, capsys):
     assert main(["replay", str(log_file), "--robot", slow_reference(), "--json"]) == 0
     figures = json.loads(capsys.readouterr().out)

@@ -113,6 +113,7 @@ def test_status_says_what_is_wrong_with_a_servo_in_one_line() -> None:
     assert _servo(ServoHealth(7, "elbow", "faulted")) == "7 (elbow) faulted"
 
 
+@pytest.mark.long
 @pytest.mark.timeout(90)
 def test_a_daemon_tells_its_clients_of_a_servo_that_went_silent(tmp_path) -> None:
     faults = tmp_path / "faults.toml"

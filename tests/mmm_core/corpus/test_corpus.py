@@ -15,6 +15,7 @@ from mmm_core.corpus.stream import make_corpus
 from mmm_core.corpus.synthesis import ClipSpec, draw_spec, synthesise, synthesise_spec
 from mmm_core.language.mirroring import mirror_words
 from mmm_core.motion.features import recover
+from tests.support.sizes import few_and_long
 
 
 @given(st.integers(0, 3000))
@@ -37,7 +38,7 @@ def test_a_clip_depends_on_seed_and_number_alone() -> None:
 
 
 @pytest.mark.parametrize("n_seeds", [1, pytest.param(4, marks=pytest.mark.soak)])
-@pytest.mark.parametrize("name", sorted(FAMILIES))
+@pytest.mark.parametrize("name", few_and_long(sorted(FAMILIES)[::8], sorted(FAMILIES)))
 def test_every_family_performs_and_speaks_in_all_its_forms(name: str, n_seeds: int) -> None:
     family = FAMILIES[name]
     for side in family.sides or ("",):
@@ -76,6 +77,7 @@ def test_a_sentence_names_no_side_that_the_motion_has_not(seed: int) -> None:
     assert named or side == "right", "an unnamed side is the right one"
 
 
+@pytest.mark.long
 def test_known_commands_are_plain() -> None:
     known = known_commands(10_000)
     assert {"wave your left hand", "clap three times", "point up"} <= known

@@ -79,6 +79,7 @@ def test_a_round_has_them_as_often_as_asked() -> None:
     assert all(1 <= len(c.captions) <= 2 and not c.n_seen for c in first)
 
 
+@pytest.mark.long
 def test_clips_of_another_length_keep_their_gesture(tmp_path: Path) -> None:
     plain, longer = (
         FreshRecipe(clips=12, first=12, deterministic_share=1.0, other_length_share=share, captions=1)

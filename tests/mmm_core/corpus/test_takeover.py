@@ -57,6 +57,7 @@ def test_seen_tokens_are_neither_hidden_nor_learnt() -> None:
     assert learnt(14, n_tokens, n_seen).sum(1).tolist() == [7, 9, 1]
 
 
+@pytest.mark.long
 def test_rounds_keep_how_much_of_a_clip_is_seen(tmp_path: Path) -> None:
     model, encoder = load_model(), load_text_encoder()
     how = FreshRecipe(clips=3, first=6, every=2, rounds=1, captions=1, takeover_share=1.0)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 import numpy as np
 import pytest
 
@@ -11,6 +13,7 @@ from mmm_core.evaluation.reconstruction import shown
 from mmm_core.motion.features import mirror
 from mmm_core.motion.posture_features import PostureFeatures
 from mmm_core.recognition.signs import shows
+from tests.support.sizes import few_and_long
 
 
 def drawn(name: str, n: int, seed: int = 3) -> list[tuple[Gesture, np.ndarray]]:
@@ -27,10 +30,11 @@ def drawn(name: str, n: int, seed: int = 3) -> list[tuple[Gesture, np.ndarray]]:
     return made
 
 
-@pytest.fixture(scope="module")
-def everything() -> list[tuple[Gesture, PostureFeatures, PostureFeatures]]:
-    """A few clips of every family, each with its mirror image."""
-    return [(g, shown(f), shown(mirror(f))) for name in FAMILIES for g, f in drawn(name, 3)]
+@cache
+def clips(every: int) -> list[tuple[Gesture, PostureFeatures, PostureFeatures]]:
+    """A few clips of one family in `every`, each with its mirror image; and clips that stand."""
+    names = dict.fromkeys((*sorted(FAMILIES)[::every], "stand"))
+    return [(g, shown(f), shown(mirror(f))) for name in names for g, f in drawn(name, 3)]
 
 
 def asked_side(name: str, side: str) -> str:
@@ -39,24 +43,31 @@ def asked_side(name: str, side: str) -> str:
     return side if side in sides else "both" if sides == ("both",) else ""
 
 
-@pytest.fixture(scope="module", params=[6, pytest.param(1, id="every clip", marks=pytest.mark.soak)])
-def seen_elsewhere(
-    request: pytest.FixtureRequest, everything: list[tuple[Gesture, PostureFeatures, PostureFeatures]]
-) -> dict[str, list[bool]]:
-    """For each family whether its sign is seen in a sixth of the clips of the other families; in all in the soak run."""
-    seen: dict[str, list[bool]] = {name: [] for name in FAMILIES}
-    for g, s, _ in everything[:: request.param]:
-        for name, family in FAMILIES.items():
+@cache
+def seen_elsewhere(every: int, every_clip: int) -> dict[str, list[bool]]:
+    """For each of these families whether its sign is seen in one clip in `every_clip` of the others."""
+    names = sorted(FAMILIES)[::every]
+    seen: dict[str, list[bool]] = {name: [] for name in names}
+    for g, s, _ in clips(every)[::every_clip]:
+        for name in names:
             if g.family != name:
-                seen[name].append(shows(s, name, asked_side(name, g.side), (family.directions or ("",))[0]))
+                where = (FAMILIES[name].directions or ("",))[0]
+                seen[name].append(shows(s, name, asked_side(name, g.side), where))
     return seen
 
 
-@pytest.mark.parametrize("name", sorted(FAMILIES))
-def test_each_family_has_a_sign_that_sees_it_and_little_else(
-    name: str, everything: list[tuple[Gesture, PostureFeatures, PostureFeatures]], seen_elsewhere: dict[str, list[bool]]
-) -> None:
+SOME = 12
+"""The default suite takes one family in so many."""
+CASES = [
+    *few_and_long([(name, SOME, 1) for name in sorted(FAMILIES)[::SOME]], [(name, 1, 6) for name in sorted(FAMILIES)]),
+    *(pytest.param(name, 1, 1, marks=pytest.mark.soak) for name in sorted(FAMILIES)),
+]
+
+
+@pytest.mark.parametrize(("name", "every", "every_clip"), CASES)
+def test_each_family_has_a_sign_that_sees_it_and_little_else(name: str, every: int, every_clip: int) -> None:
     """Right: own motions. Mirrored: not with the same arm. Absent: standing. Other: every other family."""
+    everything = clips(every)
     own = [(g, s, m) for g, s, m in everything if g.family == name]
     assert sum(shows(s, name, g.side, g.direction) for g, s, _ in own) >= len(own) - 1
     one_sided = [(g, m) for g, _, m in own if g.side in ("left", "right")]
@@ -66,7 +77,7 @@ def test_each_family_has_a_sign_that_sees_it_and_little_else(
     if name not in ("stand", "shift"):
         absent = [s for g, s, _ in everything if g.family == "stand"]
         assert not any(shows(s, name, asked_side(name, ""), where) for s in absent)
-    assert np.mean(seen_elsewhere[name]) < (0.32 if name in LOOSE else 0.12)
+    assert np.mean(seen_elsewhere(every, every_clip)[name]) < (0.32 if name in LOOSE else 0.12)
 
 
 USES_OTHER_ARM = ("disco", "dab", "superhero")
@@ -78,5 +89,8 @@ LOOSE = ("point", "beckon", "go_away", "punch", "hook", "uppercut", "karate_chop
 """Signs of up-and-down and to-and-fro movements, which many gestures have."""
 
 
-def test_signs_together_seldom_see_what_is_not_there(seen_elsewhere: dict[str, list[bool]]) -> None:
-    assert np.mean([np.mean(seen) for seen in seen_elsewhere.values()]) < 0.06
+@pytest.mark.parametrize(
+    ("every", "every_clip"), [*few_and_long([(SOME, 1)], [(1, 6)]), pytest.param(1, 1, marks=pytest.mark.soak)]
+)
+def test_signs_together_seldom_see_what_is_not_there(every: int, every_clip: int) -> None:
+    assert np.mean([np.mean(seen) for seen in seen_elsewhere(every, every_clip).values()]) < 0.06

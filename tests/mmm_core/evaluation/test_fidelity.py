@@ -21,6 +21,7 @@ from mmm_core.evaluation.reference import reference
 from mmm_core.motion.features import mirror, recover
 from mmm_core.motion.motion import FPS, Motion
 from mmm_core.motion.posture_features import posture_features
+from tests.support.sizes import few_and_long
 
 REPEATED = (
     Gesture("row", "both", 4), Gesture("flap", "both", 4), Gesture("knock", "right", 4), Gesture("swim_crawl", "both", 4),
@@ -52,14 +53,14 @@ def name(g: Gesture) -> str:
 
 
 @pytest.mark.parametrize("n_people", [5, pytest.param(10, marks=pytest.mark.soak)])
-@pytest.mark.parametrize("g", [*REPEATED, *SIDED], ids=name)
+@pytest.mark.parametrize("g", few_and_long([REPEATED[7], REPEATED[9], SIDED[2]], [*REPEATED, *SIDED]), ids=name)
 def test_the_clean_performance_and_a_persons_pass(g: Gesture, n_people: int) -> None:
     assert not faults(performed(g).body, g)
     people = [faults(performed(g, 0.0, seed).body, g) for seed in range(n_people)]
     assert sum(not found for found in people) >= 0.8 * n_people, people
 
 
-@pytest.mark.parametrize("g", [*REPEATED, *SIDED], ids=name)
+@pytest.mark.parametrize("g", few_and_long([REPEATED[7], SIDED[2]], [*REPEATED, *SIDED]), ids=name)
 def test_standing_still_fails(g: Gesture) -> None:
     body = performed(g).body
     n = len(body.joints_m)
@@ -92,7 +93,7 @@ def stroke_frames(g: Gesture) -> list[int]:
     return np.linspace(core.start, core.stop, g.count + 1).round().astype(int).tolist()
 
 
-@pytest.mark.parametrize("g", REPEATED, ids=name)
+@pytest.mark.parametrize("g", few_and_long([REPEATED[7], REPEATED[9]], REPEATED), ids=name)
 def test_every_second_stroke_left_out_fails(g: Gesture) -> None:
     body = performed(g).body
     frames = np.arange(len(body.joints_m))
@@ -102,7 +103,7 @@ def test_every_second_stroke_left_out_fails(g: Gesture) -> None:
     assert faults(in_frames(body, frames), g) & {"count", "pace"}
 
 
-@pytest.mark.parametrize("g", REPEATED, ids=name)
+@pytest.mark.parametrize("g", few_and_long([REPEATED[7], REPEATED[9]], REPEATED), ids=name)
 def test_strokes_at_random_times_fail(g: Gesture) -> None:
     body = performed(g).body
     at = stroke_frames(g)
@@ -124,7 +125,10 @@ def test_an_ellipse_of_one_to_three_is_no_circle() -> None:
     assert "round" in drawn(1 / 3)
 
 
-@pytest.mark.parametrize("family", ["row", "flap", "swim_breast", "march_arms", "run_arms", "swim_crawl", "conduct"])
+@pytest.mark.parametrize(
+    "family",
+    few_and_long(["flap", "run_arms"], ["row", "swim_breast", "march_arms", "swim_crawl", "conduct"]),
+)
 def test_arms_out_of_step_fail(family: str) -> None:
     g = Gesture(family, "both", 4)
     body = performed(g).body
@@ -147,6 +151,7 @@ def test_palms_that_pass_without_meeting_fail() -> None:
     assert "touch" in clapped(0.2)
 
 
+@pytest.mark.long
 def test_the_figure_is_the_share_of_what_the_corpus_shows(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(fidelity_module, "CORPUS_DRAWS", 4)
     clips: dict[tuple[str, int], SynthClip] = {}

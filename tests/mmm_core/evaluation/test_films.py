@@ -69,6 +69,7 @@ def test_the_liveliest_stretch() -> None:
     assert liveliest(motion, 60) is motion
 
 
+@pytest.mark.long
 def test_all_together(engine: Engine, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     real = {"somebody waves": shown(engine, "wave with your right hand", 4)}
     monkeypatch.setattr(films, "recordings", lambda _folder, wanted: {c: real[c] for c in wanted})
@@ -90,6 +91,7 @@ def test_a_folder_without_the_recordings_is_refused(tmp_path: Path) -> None:
         films.recordings(tmp_path, ["a person throws punches"])
 
 
+@pytest.mark.long
 def test_the_worst_families_stand_beside_the_corpus(engine: Engine, tmp_path: Path) -> None:
     told = tmp_path / "fidelity.json"
     told.write_text(

@@ -42,6 +42,7 @@ class TestRPrecision:
         texts = rng(0).normal(size=(64, 8))
         assert metrics.r_precision(texts, np.ones((64, 8)), rng()) == {1: 1 / 32, 2: 2 / 32, 3: 3 / 32}
 
+    @pytest.mark.long
     @given(st.integers(0, 50), st.sampled_from([0.1, 1.0, 4.0]))
     def test_it_is_scikit_learns_top_k_accuracy(self, seed: int, noise: float) -> None:
         # Here, as it takes half a second and every process of the suite reads this file.

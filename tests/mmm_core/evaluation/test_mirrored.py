@@ -14,6 +14,7 @@ from mmm_core.model.sampling import OFFICIAL_SAMPLING
 from mmm_core.motion.features import mirror
 from mmm_core.motion.motion import Motion
 from mmm_core.motion.skeleton import MIRROR
+from tests.support.sizes import few_and_long
 
 
 @pytest.mark.parametrize(
@@ -45,13 +46,15 @@ def test_both_of_a_pair_read_the_same(text: str) -> None:
 
 @pytest.mark.parametrize(
     ("one", "other"),
-    [
-        ("wave with your left hand", "wave with your right hand"),
-        ("raise your left hand right away", "raise your right hand right away"),
-        ("wave, hand on the left, other on the right hip", "wave, hand on the right, other on the left hip"),
-        ("look to the left, then look to the right", "look to the right, then look to the left"),
-        ("wave with the left hand, not with the right", "wave with the right hand, not with the left"),
-    ],
+    few_and_long(
+        [("wave with your left hand", "wave with your right hand")],
+        [
+            ("raise your left hand right away", "raise your right hand right away"),
+            ("wave, hand on the left, other on the right hip", "wave, hand on the right, other on the left hip"),
+            ("look to the left, then look to the right", "look to the right, then look to the left"),
+            ("wave with the left hand, not with the right", "wave with the right hand, not with the left"),
+        ],
+    ),
 )  # fmt: skip
 def test_the_mirrored_text_gives_the_mirrored_motion(engine: Engine, one: str, other: str) -> None:
     for seed in (0, 7):
@@ -66,6 +69,7 @@ def test_the_mirrored_text_gives_the_mirrored_motion(engine: Engine, one: str, o
         assert a.motion.text == one and len(a.motion.tokens) == len(b.motion.tokens)
 
 
+@pytest.mark.long
 def test_a_mirrored_motion_can_be_edited(engine: Engine) -> None:
     motion = engine.generate("wave with your left hand", seed=1, seconds=4).motion
     again = edit(engine, motion, Edit(start_s=3.0), "wave with your left hand", seed=2).motion

@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 
 from mmm_core.errors import GenerationError
 from mmm_core.evaluation.edits import KINDS, SETS, read_cases, run_case, shows_asked
+from mmm_core.generate import shown_edits
 from mmm_core.generate.editing import Edit, edit, extend, in_between, part_names
 from mmm_core.generate.engine import Engine
 from mmm_core.generate.story import Scene, check_scenes, generate_story
@@ -22,6 +23,12 @@ from mmm_core.motion.features import Root, joints_from_positions, recover, root_
 from mmm_core.motion.motion import FPS
 from mmm_core.motion.posture_features import part, posture_features
 from tests.support.sizes import examples, few_and_long
+
+
+@pytest.fixture
+def one_candidate(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What an edit keeps and where it joins is that of every candidate; to generate eight takes seconds."""
+    monkeypatch.setattr(shown_edits, "CANDIDATES", 1)
 
 
 def ids(engine: Engine, motion: object) -> torch.Tensor:
@@ -38,7 +45,7 @@ class TestEdit:
         assert not torch.equal(before[5:15], after[5:15])
         assert changed.joints_m.shape == motion.joints_m.shape
 
-    def test_in_betweening_from_both_ends(self, engine: Engine) -> None:
+    def test_in_betweening_from_both_ends(self, engine: Engine, one_candidate: None) -> None:
         """Out-painting: the middle is kept, both ends are made again."""
         motion = engine.generate("clap your hands", seed=1, seconds=4).motion
         changed = edit(engine, motion, [Edit(0, 1), Edit(3)], "clap your hands", seed=9).motion
@@ -80,7 +87,7 @@ class TestEdit:
 class TestWhatAnEditShows:
     """`mmmd edit` left the arm down and reported success: kept ids were tested, what the text asks was not."""
 
-    @pytest.mark.parametrize("kind", few_and_long(["part", "beginning"], KINDS))
+    @pytest.mark.parametrize("kind", few_and_long(["beginning"], KINDS))
     def test_most_edits_show_their_text_and_keep_the_rest(self, engine: Engine, kind: str) -> None:
         """Three of five, of a few cases: the figure for all is `mmmd eval edits`."""
         cases = [case for case in read_cases("development") if case.kind == kind][:5]
@@ -105,7 +112,7 @@ class TestWhatAnEditShows:
                 shown = part(shown, round((case.start_s or 0) * FPS), end or len(base.joints_m))
                 assert not shows_asked(shown, case), case
 
-    def test_what_cannot_be_shown_is_said(self, engine: Engine) -> None:
+    def test_what_cannot_be_shown_is_said(self, engine: Engine, one_candidate: None) -> None:
         """One arm alone claps no hands while the other one hangs."""
         motion = engine.generate("nod twice", seed=3, seconds=3).motion
         edited = edit(engine, motion, Edit(parts=("left_arm",)), "clap your hands", seed=3)
@@ -122,13 +129,13 @@ class TestWhatAnEditShows:
 
 
 class TestExtend:
-    def test_new_ends_leave_the_middle(self, engine: Engine) -> None:
+    def test_new_ends_leave_the_middle(self, engine: Engine, one_candidate: None) -> None:
         motion = engine.generate("wave with your right hand", seed=3, seconds=3).motion
         longer = extend(engine, motion, "bow", before_s=1, after_s=2, seed=5).motion
         assert len(longer.joints_m) == 20 * 6
         assert torch.equal(ids(engine, longer)[5:20], ids(engine, motion))
 
-    def test_in_between_two_motions(self, engine: Engine) -> None:
+    def test_in_between_two_motions(self, engine: Engine, one_candidate: None) -> None:
         first = engine.generate("wave with your right hand", seed=3, seconds=2).motion
         second = engine.generate("clap your hands", seed=3, seconds=2).motion
         joined = in_between(engine, first, second, 1.0, "clap your hands", seed=5).motion
@@ -222,6 +229,7 @@ class TestStory:
                    for a, b in pairwise(texts))  # fmt: skip
 
 
+@pytest.mark.long
 def test_rows_of_different_length_in_a_batch_get_what_they_get_alone() -> None:
     """The released code gives other tokens in a batch than alone; here the seed decides, not the neighbours.
 

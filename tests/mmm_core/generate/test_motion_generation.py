@@ -13,6 +13,7 @@ from mmm_core.generate.motion_generation import OPENING_TOKENS
 from mmm_core.model.tokens import FRAMES_PER_TOKEN
 from mmm_core.motion.posture_features import posture_features
 from tests.support.shipped import shipped_engine
+from tests.support.sizes import few_and_long
 
 TEXTS = (
     "wave with your right hand", "wave with your left hand", "clap three times", "nod, then bow", "point up with your left hand",
@@ -32,7 +33,7 @@ AT_ONCE = (
 )
 
 
-@pytest.mark.parametrize("text", TEXTS)
+@pytest.mark.parametrize("text", few_and_long(["wave with your left hand", "wave and nod"], TEXTS))
 def test_the_motion_is_the_same_with_and_without_a_draft(text: str) -> None:
     generation = shipped_engine().begin(text, seed=3)
     draft, motion = generation.preview(), generation.result().motion
@@ -41,7 +42,7 @@ def test_the_motion_is_the_same_with_and_without_a_draft(text: str) -> None:
     assert np.array_equal(motion.tokens, shipped_engine().generate(text, seed=3).motion.tokens)
 
 
-@pytest.mark.parametrize("text", TEXTS)
+@pytest.mark.parametrize("text", few_and_long(["wave with your left hand", "wave and nod"], TEXTS))
 def test_the_motion_begins_as_its_draft_does(text: str) -> None:
     generation = shipped_engine().begin(text, seed=3)
     draft, motion = generation.preview(), generation.result().motion
@@ -85,7 +86,7 @@ def test_what_is_rejected_has_no_draft() -> None:
     assert generation.result().status == "rejected" and generation.n_frames == 0
 
 
-@pytest.mark.parametrize(("text", "commands"), AT_ONCE)
+@pytest.mark.parametrize(("text", "commands"), few_and_long(AT_ONCE[:1], AT_ONCE))
 def test_each_of_two_commands_at_once_is_seen(text: str, commands: tuple[Command, Command]) -> None:
     motion = shipped_engine().generate(text, seed=1).motion
     shown = posture_features(motion.joints_m, motion.head_quat_wxyz, motion.forearm_twist_rad)

@@ -13,6 +13,7 @@ from mmm_core.generate.repeated_strokes import expected_tokens, periods, repeate
 from mmm_core.model.tokens import MAX_TOKENS
 from mmm_core.motion.features import mirror
 from mmm_core.motion.repetitions import strokes_of
+from tests.support.sizes import few_and_long
 
 
 def tokens(engine: Engine, text: str) -> list[int]:
@@ -20,7 +21,9 @@ def tokens(engine: Engine, text: str) -> list[int]:
     return engine.generate(text).motion.tokens.tolist()
 
 
-@pytest.mark.parametrize("text", ["nod {} times", "bow {} times", "knock {} times with your right hand"])
+@pytest.mark.parametrize(
+    "text", few_and_long(["nod {} times"], ["bow {} times", "knock {} times with your right hand"])
+)
 def test_many_strokes_are_two_whose_period_is_repeated(engine: Engine, text: str) -> None:
     two = tokens(engine, text.format("two"))
     lengths = []
@@ -38,7 +41,7 @@ def test_many_strokes_take_as_long_as_they_take(engine: Engine) -> None:
     assert len(tokens(engine, "bow ten times")) > MAX_TOKENS
 
 
-@pytest.mark.parametrize("count", [3, 4, 5, 6, 8, 12])
+@pytest.mark.parametrize("count", few_and_long([3, 8], [4, 5, 6, 12]))
 def test_strokes_are_as_many_as_the_text_names(engine: Engine, count: int) -> None:
     found = strokes_of(engine.generate(f"nod {count} times").motion)
     assert found is not None and len(found.frames) == count

@@ -23,6 +23,7 @@ SCENES = [
 ]
 
 
+@pytest.mark.long
 def test_step_by_step_it_is_the_same_story(engine: Engine) -> None:
     """`StoryState` goes through bytes between the steps, as between two machines."""
     whole = np.concatenate([p.features for p in generate_story(engine, SCENES, seed=4)])

@@ -18,6 +18,7 @@ from tests.support.official import TOLERANCE
 pytestmark = needs_golden
 
 
+@pytest.mark.long
 def test_clip_text_tower(io: dict[str, Tensor]) -> None:
     tower = clip_from_openai(golden("clip_text_tiny"), GOLDEN, n_heads=4)
     states = tower.states(io["clip.in.tokens"])

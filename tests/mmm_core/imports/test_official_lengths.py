@@ -46,7 +46,7 @@ class TestCounts:
         for n_tokens, counts in rows.items():
             assert official_counts(n_tokens, n_tokens, max_steps=max_steps) == counts
 
-    @pytest.mark.parametrize("max_steps", [10, 20])
+    @pytest.mark.parametrize("max_steps", few_and_long([10], [10, 20]))
     @pytest.mark.parametrize("early_exit", [False, True])
     @by_lengths
     def test_every_number_of_open_positions(self, max_steps: int, early_exit: bool, lengths: tuple[int, ...]) -> None:
@@ -131,6 +131,7 @@ class TestIds:
             )
             assert torch.equal(fill(model, text, [row], [0], how, self.noise())[0], expected), f"{n} tokens"
 
+    @pytest.mark.long
     @by_lengths
     def test_all_lengths_in_one_batch(
         self, model: MotionTransformer, text: TextStates, lengths: tuple[int, ...]
@@ -140,7 +141,7 @@ class TestIds:
         for row, ids in zip(rows, filled, strict=True):
             assert torch.equal(ids, sample_plainly(model, text, row, early_exit=False)), f"{len(row)} tokens"
 
-    @pytest.mark.parametrize("edit", list(holes(8)))
+    @pytest.mark.parametrize("edit", few_and_long(["both_ends"], list(holes(8))))
     @by_lengths
     def test_edits_of_all_lengths(
         self, model: MotionTransformer, text: TextStates, edit: str, lengths: tuple[int, ...]

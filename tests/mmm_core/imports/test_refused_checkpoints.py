@@ -18,6 +18,7 @@ from torch import Tensor
 from mmm_core.errors import CheckpointError
 from mmm_core.imports.clip_weights import clip_from_openai
 from tests.support.golden import GOLDEN, golden, needs_golden
+from tests.support.sizes import few_and_long
 
 pytestmark = needs_golden
 
@@ -103,7 +104,7 @@ def refused(folder: Path, capsys: pytest.CaptureFixture[str]) -> str:
 
 
 class TestImport:
-    @pytest.mark.parametrize("name", list(TRANSFORMER))
+    @pytest.mark.parametrize("name", few_and_long(list(TRANSFORMER)[::4], list(TRANSFORMER)))
     def test_a_damaged_transformer(self, tmp_path: Path, capsys: pytest.CaptureFixture[str], name: str) -> None:
         damage, message = TRANSFORMER[name]
         state = dict(golden("t2m_trans_tiny"))
@@ -111,7 +112,7 @@ class TestImport:
         write(tmp_path, golden("vqvae_tiny"), state)
         assert_matches(message, refused(tmp_path, capsys))
 
-    @pytest.mark.parametrize("name", list(TOKENIZER))
+    @pytest.mark.parametrize("name", few_and_long(list(TOKENIZER)[::4], list(TOKENIZER)))
     def test_a_damaged_tokenizer(self, tmp_path: Path, capsys: pytest.CaptureFixture[str], name: str) -> None:
         damage, message = TOKENIZER[name]
         state = dict(golden("vqvae_tiny"))

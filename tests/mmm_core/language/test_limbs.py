@@ -10,6 +10,7 @@ from mmm_core.corpus.family_words import family_phrases, limb_words
 from mmm_core.language.limbs import limbs_of
 from mmm_core.language.reading import read
 from mmm_core.language.word_tables import LIMB_WORDS_FILE
+from tests.support.sizes import few_and_long
 
 PHRASES_EACH = 8
 
@@ -37,9 +38,11 @@ def test_the_limb_of_most_phrases_is_known_and_of_few_another() -> None:
     assert np.mean([known and not right for known, right in told]) < 0.03
 
 
-def test_one_gesture_is_hardly_ever_taken_for_two() -> None:
-    parted = [text for text, _ in phrases() if sum(len(step) for step in read(text).steps) != 1]
-    assert len(parted) < 0.03 * len(phrases())
+@pytest.mark.parametrize("every", few_and_long([6], [1]))
+def test_one_gesture_is_hardly_ever_taken_for_two(every: int) -> None:
+    some = phrases()[::every]
+    parted = [text for text, _ in some if sum(len(step) for step in read(text).steps) != 1]
+    assert len(parted) < 0.03 * len(some)
 
 
 @pytest.mark.parametrize(

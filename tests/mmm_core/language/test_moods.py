@@ -12,6 +12,7 @@ from mmm_core.language.moods import MOODS, mood_of
 from mmm_core.language.reading import read
 from mmm_core.motion.motion import Motion
 from mmm_core.motion.posture_features import posture_features
+from tests.support.sizes import few_and_long
 
 
 @pytest.mark.parametrize(
@@ -55,7 +56,7 @@ def pitches_deg(motion: Motion) -> np.ndarray:
 
 
 @pytest.mark.parametrize(
-    ("word", "mood"), [("sadly", "sad"), ("proudly", "proud"), ("shyly", "shy"), ("happily", "happy")]
+    ("word", "mood"), few_and_long([("sadly", "sad")], [("proudly", "proud"), ("shyly", "shy"), ("happily", "happy")])
 )
 def test_a_mood_is_shown_by_trunk_head_and_tempo(engine: Engine, word: str, mood: str) -> None:
     plain, moody = (engine.generate(text).motion for text in ("wave your right hand", f"wave your right hand {word}"))

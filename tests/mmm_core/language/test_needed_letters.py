@@ -15,6 +15,7 @@ from mmm_core.language.needed_letters import compiled, letters_of
 from mmm_core.language.requests import _everyday, _frames, _openings, _sentences
 from mmm_core.language.spelling import mended
 from mmm_core.language.word_tables import RuleTable, replaced, substitutions
+from tests.support.sizes import few_and_long
 
 TABLES: dict[str, Callable[[], RuleTable]] = {
     "everyday": _everyday, "openings": _openings, "rewrites": lambda: substitutions("rewrites"),
@@ -24,7 +25,7 @@ TABLES: dict[str, Callable[[], RuleTable]] = {
 """Made in the test: every process of the suite reads this file."""
 
 
-@pytest.mark.parametrize("name", TABLES)
+@pytest.mark.parametrize("name", few_and_long(["everyday", "size"], TABLES))
 def test_no_pattern_is_missed(name: str) -> None:
     table, found = TABLES[name](), 0
     for sentence in read_sentences("words_seen"):

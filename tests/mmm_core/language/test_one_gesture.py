@@ -13,6 +13,7 @@ from mmm_core.corpus.synthesis import draw_gesture
 from mmm_core.language.one_gesture import TABLE
 from mmm_core.language.reading import read
 from mmm_core.language.word_tables import lines
+from tests.support.sizes import few_and_long
 
 PARTED_AT_MOST = 0.01
 """Share of captions of one gesture that may be read as several commands: they say two directions or sides in turn."""
@@ -22,7 +23,7 @@ def said(text: str) -> str:
     return "; ".join(read(text).sentences)
 
 
-@pytest.mark.parametrize("seed", [11, 12])
+@pytest.mark.parametrize("seed", few_and_long([11], [11, 12]))
 def test_captions_of_one_gesture_are_one_command(seed: int) -> None:
     """Before the table, the reader took 79 of 2,368 captions for several commands or for a denial."""
     captions: list[str] = []
@@ -33,8 +34,9 @@ def test_captions_of_one_gesture_are_one_command(seed: int) -> None:
     assert len(parted) <= PARTED_AT_MOST * len(captions), parted
 
 
-def test_each_phrase_of_the_table_needs_it_to_be_one_command() -> None:
-    for phrase in lines(TABLE):
+@pytest.mark.parametrize("every", few_and_long([8], [1]))
+def test_each_phrase_of_the_table_needs_it_to_be_one_command(every: int) -> None:
+    for phrase in lines(TABLE)[::every]:
         known, by_rules = read(phrase), read(phrase, by_rules_alone=True)
         assert [len(step) for step in known.steps] == [1] and not known.denied, phrase
         assert [len(step) for step in by_rules.steps] != [1] or by_rules.denied, f"the table does not need {phrase!r}"

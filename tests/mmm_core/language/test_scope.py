@@ -24,6 +24,7 @@ from mmm_core.training import scope_training
 from mmm_core.training.batches import Clip
 from mmm_core.training.recipe import Recipe, ScopeRecipe
 from mmm_core.training.scope_training import build_scope, own_captions, scope_sentences
+from tests.support.sizes import few_and_long
 
 
 def plain(text: str) -> str:
@@ -93,9 +94,9 @@ class TestAuroc:
             auroc([1.0], [])
 
 
-@pytest.mark.parametrize("every", [3, pytest.param(1, id="all", marks=pytest.mark.soak)])
+@pytest.mark.parametrize("every", [*few_and_long([9], [3]), pytest.param(1, id="all", marks=pytest.mark.soak)])
 def test_the_score_parts_the_development_prompts(engine: Engine, every: int) -> None:
-    """Every third prompt of each kind; all in the soak run, and in `mmmd eval scope`."""
+    """Every ninth prompt of each kind, every third in `make test-long`; all in the soak run, and in `mmmd eval scope`."""
     inside = [*SCOPE_DEVELOPMENT.in_scope, *(p.text for p in PROBES)][::every]
     outside = {kind: texts[::every] for kind, texts in SCOPE_DEVELOPMENT.out_of_scope.items()}
     found = scope_figures(engine, inside, outside)
@@ -104,6 +105,7 @@ def test_the_score_parts_the_development_prompts(engine: Engine, every: int) -> 
     assert found["n"] == len(inside) + len(out_of(outside))
 
 
+@pytest.mark.long
 def test_another_side_of_the_same_texts_is_seen(engine: Engine) -> None:
     """The measure can fail: with the two lists in each other's place it does."""
     found = scope_figures(engine, OUTSIDE[:20], {"known": sorted(known_commands(1))[:20]})

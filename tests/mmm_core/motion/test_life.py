@@ -14,6 +14,7 @@ from mmm_core.motion.life import OPENING_FRAMES, Life, alive
 from mmm_core.motion.motion import FPS, Motion
 from mmm_core.motion.posture_features import posture_features
 from mmm_core.motion.skeleton import MIRROR, matrix_from_quat
+from tests.support.sizes import few_and_long
 
 Array = NDArray[np.floating]
 STILL = replace(Life(), chest_sway=(0.0, 0.0, 0.0), head_sway=(0.0, 0.0, 0.0))
@@ -61,7 +62,7 @@ def chest_pitch_deg(m: Motion) -> Array:
     return posture_features(m.joints_m, m.head_quat_wxyz).trunk_pitch_deg
 
 
-@pytest.mark.parametrize("seed", range(12))
+@pytest.mark.parametrize("seed", few_and_long(range(3), range(12)))
 def test_the_mirrored_motion_becomes_the_mirror_image_to_the_last_bit(seed: int) -> None:
     m = gesture(seed)
     image, of_image = mirrored(alive(m)), alive(mirrored(m), is_mirrored=True)
@@ -69,7 +70,7 @@ def test_the_mirrored_motion_becomes_the_mirror_image_to_the_last_bit(seed: int)
     assert np.array_equal(image.head_quat_wxyz, of_image.head_quat_wxyz)
 
 
-@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("seed", few_and_long(range(2), range(6)))
 def test_motions_that_share_their_opening_still_share_it(seed: int) -> None:
     """A preview and its motion: what comes after the opening, and how long it is, changes none of its frames."""
     m, other = gesture(seed), gesture(seed + 1)
@@ -83,7 +84,7 @@ def test_motions_that_share_their_opening_still_share_it(seed: int) -> None:
     assert not np.array_equal(a.joints_m[:n], m.joints_m[:n])
 
 
-@pytest.mark.parametrize("seed", range(12))
+@pytest.mark.parametrize("seed", few_and_long(range(3), range(12)))
 def test_ends_legs_and_arms_against_the_chest_stay_and_nothing_turns_far(seed: int) -> None:
     m = gesture(seed)
     a = alive(m)

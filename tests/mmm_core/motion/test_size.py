@@ -8,6 +8,7 @@ from mmm_core.corpus.families import FAMILIES
 from mmm_core.corpus.heldout import Command
 from mmm_core.evaluation.manner import judge_manner, plain_sentence
 from tests.support.shipped import shipped_engine
+from tests.support.sizes import few_and_long
 
 COMMANDS = (
     ("wave your left hand", "wave", "arm", "left"), ("clap", "clap", "arm", ""), ("shrug your shoulders", "shrug", "arm", ""),
@@ -17,11 +18,12 @@ COMMANDS = (
 )  # fmt: skip
 
 
-@pytest.mark.parametrize(("size", "factor"), [("large", 1.4), ("small", 0.6)])
-def test_a_word_of_size_goes_the_right_way(size: str, factor: float) -> None:
+@pytest.mark.parametrize("n", few_and_long([3], [len(COMMANDS)]))
+@pytest.mark.parametrize(("size", "factor"), few_and_long([("large", 1.4)], [("small", 0.6)]))
+def test_a_word_of_size_goes_the_right_way(size: str, factor: float, n: int) -> None:
     """All but one: motions differ by the processor's arithmetic, and one that is large already may not grow by 15 %."""
     wrong: list[str] = []
-    for text, family, limb, side in COMMANDS:
+    for text, family, limb, side in COMMANDS[:n]:
         shown, plain = (
             shipped_engine().generate(t, seed=0).motion for t in (f"exactly: {text} ({factor} times as large)", text)
         )

@@ -48,6 +48,7 @@ def test_a_description_follows_the_motion_and_not_the_text():
     assert said_of(waved, "bow\nnod") == "waves with the left hand 3 times"
 
 
+@pytest.mark.long
 def test_of_most_gestures_the_family_is_said():
     probes = [p for p in PROBES if p.then is None][::3]
     right = 0

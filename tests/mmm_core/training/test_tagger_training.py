@@ -28,6 +28,7 @@ def _share_right(tagger: SentenceTagger, sentences: list[TaggedSentence]) -> flo
     return sum(right) / len(right)
 
 
+@pytest.mark.long
 def test_it_learns_the_sentences_it_is_given_and_is_read_back(tmp_path: Path) -> None:
     given = [*load_marked_sentences()[:6], *load_manner_sentences()[:4]]
     tagger = train_tagger(tmp_path / "tagger.safetensors", given, steps=45)
@@ -37,6 +38,7 @@ def test_it_learns_the_sentences_it_is_given_and_is_read_back(tmp_path: Path) ->
     assert all(not p.requires_grad for p in again.parameters())
 
 
+@pytest.mark.long
 def test_equal_arguments_give_equal_weights(tmp_path: Path) -> None:
     given = [*load_marked_sentences()[:2], *load_manner_sentences()[:2]]
     a, b = (train_tagger(tmp_path / name, given, steps=2) for name in ("a", "b"))

@@ -21,6 +21,7 @@ from tests.support.small_training import index_commands, small
 pytestmark = pytest.mark.usefixtures("quick_parts")
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("layout", few_and_long(["parts"], ["whole", "halves"]))
 def test_every_stage_of_every_layout_gives_a_model_that_generates(tmp_path: Path, layout: str) -> None:
     config, run, out = small(tmp_path / "small.toml", layout), tmp_path / "run", tmp_path / "model.safetensors"
@@ -60,6 +61,7 @@ def test_a_recipe_makes_clips_while_it_trains(tmp_path: Path, capsys: pytest.Cap
     assert "text.tuned_layers" in capsys.readouterr().err
 
 
+@pytest.mark.long
 def test_the_scope_of_a_finished_run_is_built_again(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     config, run, out = small(tmp_path / "small.toml"), tmp_path / "run", tmp_path / "again.safetensors"
     old = load_model()
@@ -76,6 +78,7 @@ def test_the_scope_of_a_finished_run_is_built_again(tmp_path: Path, capsys: pyte
     assert "a model without one" in capsys.readouterr().err
 
 
+@pytest.mark.long
 def test_an_evaluator_is_trained_and_written(tmp_path: Path) -> None:
     config, run = small(tmp_path / "small.toml"), tmp_path / "run"
     assert main(["train", "evaluator", "--config", str(config), "--run", str(run)]) == 0

@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 
 from daemon.dynamixel.registers.models import MODEL_NUMBERS, MODELS, BusModel, IndirectWindow
 from daemon.dynamixel.registers.registers import AX, X330, X_CURRENT, hardware_error_text
+from tests.support.sizes import few_and_long
 
 FACTS = Path(__file__).parents[5] / "shared" / "servos" / "servos.toml"
 ALL = [pytest.param(model, id=model.name) for model in MODELS.values()]
@@ -44,7 +45,9 @@ def test_items_do_not_overlap_and_initial_values_are_in_range(model: BusModel) -
     assert all(w.data >= w.address + 2 * w.count for w in windows)
 
 
-@pytest.mark.parametrize("model", ALL)
+@pytest.mark.parametrize(
+    "model", few_and_long(list(MODELS.values())[::6], MODELS.values()), ids=lambda model: model.name
+)
 @given(data=st.data())
 def test_a_value_survives_the_bytes_of_its_item(model: BusModel, data: st.DataObject) -> None:
     item = data.draw(st.sampled_from(sorted(model.table.values(), key=lambda i: i.address)))
