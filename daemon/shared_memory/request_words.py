@@ -57,6 +57,7 @@ _VOIDS: dict[BusRequest, tuple[BusRequest, ...]] = {
 """Earlier requests that each halt makes void, so that none of them undoes the halt when it is read afterwards."""
 
 N_WORDS = 2 * len(Asker) * len(BusRequest)
+_LASTS = np.array([kind in LASTING for kind in BusRequest])
 
 
 @dataclass(frozen=True)
@@ -83,7 +84,7 @@ class RequestWords:
         parts = words.reshape(2, len(Asker), len(BusRequest))
         self._asked, self._done = parts[0], parts[1]
         self._last_number = 0
-        self._taken: Words = np.where(np.isin(np.arange(len(BusRequest)), LASTING), self._done, self._asked)
+        self._taken: Words = np.where(_LASTS, self._done, self._asked)
 
     # The askers' side.
 

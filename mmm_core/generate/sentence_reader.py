@@ -1,21 +1,27 @@
-"""Reads sentences: by rules, and where these do not know every word, with the help of a tagger above the text encoder."""
+"""Reads sentences: by rules, and where these do not know every word, with a tagger and a classifier above the text encoder.
+
+The tagger divides the sentence and finds its manner, the classifier tells which gestures its words mean.
+"""
 
 from __future__ import annotations
 
 from dataclasses import replace
 
 import numpy as np
+import torch
 from numpy.typing import NDArray
 
 from mmm_core.inference.checkpoint import load_text_encoder
 from mmm_core.inference.onednn_linear import Packing, pack
-from mmm_core.inference.tagger_file import load_tagger
+from mmm_core.inference.own_layers_file import load_classifier, load_tagger
 from mmm_core.language.commands import Reading
+from mmm_core.language.plain_gestures import Meant, in_plain_words, is_lost, is_sure_of
 from mmm_core.language.reading import read
 from mmm_core.language.tagged_manner import manner_phrases, with_plain_manner
-from mmm_core.language.tagged_reading import is_sure, names_acts, needs_tags, read_with_tags
+from mmm_core.language.tagged_reading import is_sure, names_acts, needs_tags, read_with_tags, unknown_commands
 from mmm_core.language.tagged_words import likeliest_tags, words_of
-from mmm_core.model.sentence_tagger import SentenceTagger, log_probability
+from mmm_core.model.gesture_classifier import GestureClassifier, likeliest, likeliest_of_states
+from mmm_core.model.sentence_tagger import SentenceTagger, WordStates, log_probability, word_states
 from mmm_core.model.text import MAX_WORD_PIECES, MiniLm, strip_emoji
 
 _FIRST_SENTENCE = "nod, and once you have done that, wave to the people who are waiting"
@@ -26,27 +32,29 @@ class SentenceReader:
     """Reads texts into plain commands.
 
     Args:
-        encoder: the text encoder whose lower layers the tagger uses.
-        tagger: the tagger.
+        encoder: the text encoder whose lower layers tagger and classifier use.
+        tagger: marks commands and manner.
+        classifier: tells which gesture is meant.
     """
 
-    def __init__(self, encoder: MiniLm, tagger: SentenceTagger) -> None:
-        self._encoder, self._tagger = encoder, tagger
+    def __init__(self, encoder: MiniLm, tagger: SentenceTagger, classifier: GestureClassifier) -> None:
+        self._encoder, self._tagger, self._classifier = encoder, tagger, classifier
 
     @classmethod
     def load(cls, encoder: MiniLm | None = None, precision: Packing = "fp32") -> SentenceReader:
-        """The reader with the packed tagger.
+        """The reader with the packed tagger and classifier.
 
         Args:
             encoder: text encoder that is loaded already; the packed one when None.
-            precision: of the tagger's own layers.
+            precision: of the own layers of tagger and classifier.
 
         Raises:
             CheckpointError: a file is missing or does not fit.
         """
-        tagger = load_tagger()
+        tagger, classifier = load_tagger(), load_classifier()
         pack(tagger, precision)
-        reader = cls(encoder or load_text_encoder(), tagger)
+        pack(classifier, precision)
+        reader = cls(encoder or load_text_encoder(), tagger, classifier)
         reader.read(_FIRST_SENTENCE)
         return reader
 
@@ -59,16 +67,43 @@ class SentenceReader:
         without_emoji = read(words)
         if not needs_tags(without_emoji) or not 0 < len(words_of(words)) <= MAX_WORD_PIECES:
             return by_rules
-        tags, manners = self._tagged(words)
-        plain = with_plain_manner(words, manner_phrases(words, manners))
-        in_plain = read(plain) if plain != words else without_emoji
-        loses_an_act = names_acts(without_emoji) and not names_acts(in_plain)
-        if plain == words or loses_an_act:
-            return by_rules if is_sure(without_emoji) else replace(read_with_tags(without_emoji, tags), text=text)
-        return replace(in_plain if is_sure(in_plain) else read_with_tags(in_plain, self._tagged(plain)[0]), text=text)
+        states = self._states(words)
+        found = replace(self._divided(words, without_emoji, states), text=text)
+        return self._in_plain_words(found, states)
 
-    def _tagged(self, sentence: str) -> tuple[list[str], NDArray[np.float32]]:
-        """The likeliest tags of a sentence's words, and the (N, 5) log-probabilities of their manners."""
+    def _divided(self, words: str, by_rules: Reading, states: WordStates) -> Reading:
+        """The sentence with its words of manner understood, divided into commands."""
+        tags, manners = self._tagged(words, states)
+        plain = with_plain_manner(words, manner_phrases(words, manners))
+        if plain == words:
+            return by_rules if is_sure(by_rules) else read_with_tags(by_rules, tags)
+        in_plain, states_of_plain = read(plain), self._states(plain)
+        loses_an_act = names_acts(by_rules) and not names_acts(in_plain)
+        if loses_an_act or is_lost(self._meant(states), self._meant(states_of_plain)):
+            return by_rules if is_sure(by_rules) else read_with_tags(by_rules, tags)
+        return in_plain if is_sure(in_plain) else read_with_tags(in_plain, self._tagged(plain, states_of_plain)[0])
+
+    def _in_plain_words(self, found: Reading, states: WordStates) -> Reading:
+        """The reading in plain words where it is likely which gestures are meant."""
+        unknown = unknown_commands(found)
+        if not unknown:
+            return found
+        whole = self._meant(states)
+        if sum(map(len, found.steps)) == 1 and is_sure_of(whole):
+            return in_plain_words(found, whole, {unknown[0]: whole})
+        classes = likeliest(self._classifier, self._encoder, unknown)
+        return in_plain_words(found, whole, dict(zip(unknown, classes, strict=True)))
+
+    def _meant(self, states: WordStates) -> Meant:
+        """What a sentence means."""
+        mask = torch.ones(1, len(states.states), dtype=torch.bool)
+        return likeliest_of_states(self._classifier, states.states[None], mask)[0]
+
+    def _states(self, sentence: str) -> WordStates:
         words = [sentence[start:end] for start, end in words_of(sentence)]
-        tags, manners = log_probability(self._tagger, self._encoder, words)
+        return word_states(self._encoder, self._tagger.config.n_shared, [words])[0]
+
+    def _tagged(self, sentence: str, states: WordStates) -> tuple[list[str], NDArray[np.float32]]:
+        """The likeliest tags of a sentence's words, and the (N, 5) log-probabilities of their manners."""
+        tags, manners = log_probability(self._tagger, states)
         return likeliest_tags(tags.numpy()), manners.numpy()

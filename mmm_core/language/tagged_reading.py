@@ -87,6 +87,16 @@ def needs_tags(reading: Reading) -> bool:
     return compares or not (known and is_sure(reading))
 
 
+def unknown_commands(reading: Reading) -> list[str]:
+    """The words of the commands that are no phrases of the corpus, each once; short ones that begin with a gesture's verb are."""
+    said = [command.text for step in reading.steps for command in step]
+    return [text for text in dict.fromkeys(said) if not _is_known(_BESIDE.sub("", text.lower()))]
+
+
+def _is_known(command: str) -> bool:
+    return is_gesture_verb(command.partition(" ")[0]) if key_of(command) is None else is_known_phrase(command)
+
+
 def names_acts(reading: Reading) -> bool:
     """Whether each command begins with a verb or names a limb, or is a phrase of the corpus."""
     return all(_stands_alone(command.text.lower()) for step in reading.steps for command in step)

@@ -95,9 +95,8 @@ def word_states(encoder: MiniLm, n_shared: int, sentences: Sequence[Sequence[str
 
 
 @torch.inference_mode()
-def log_probability(tagger: SentenceTagger, encoder: MiniLm, words: Sequence[str]) -> tuple[Tensor, Tensor]:
+def log_probability(tagger: SentenceTagger, words: WordStates) -> tuple[Tensor, Tensor]:
     """(N, tags) and (N, manners) log-probabilities for each word of one sentence."""
-    (found,) = word_states(encoder, tagger.config.n_shared, [words])
-    mask = torch.ones(1, len(found.states), dtype=torch.bool)
-    tags, manners = tagger(found.states[None], mask, found.first_pieces[None])
+    mask = torch.ones(1, len(words.states), dtype=torch.bool)
+    tags, manners = tagger(words.states[None], mask, words.first_pieces[None])
     return F.log_softmax(tags[0].float(), -1), F.log_softmax(manners[0].float(), -1)

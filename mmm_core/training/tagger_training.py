@@ -15,12 +15,13 @@ from torch import Tensor, nn
 
 from mmm_core.corpus.marked_sentences import TaggedSentence, load_manner_sentences, load_marked_sentences
 from mmm_core.inference.checkpoint import load_text_encoder
-from mmm_core.inference.tagger_file import save_tagger
+from mmm_core.inference.own_layers_file import save_tagger
 from mmm_core.language.reading import read
 from mmm_core.language.tagged_words import INSIDE, MANNERS, NO_MANNER, TAGS, THEN, words_of
 from mmm_core.language.word_tables import lines
 from mmm_core.model.sentence_tagger import SentenceTagger, TaggerConfig, WordStates, word_states
 from mmm_core.model.text import MiniLm
+from mmm_core.training.slips import slip
 
 log = logging.getLogger(__name__)
 
@@ -33,7 +34,6 @@ DROPOUT, SMOOTHING = 0.15, 0.05
 SEED = 0
 _LOG_EVERY = 100
 _SHARE_WITHOUT_MARKS = _SHARE_WITH_SLIPS = 0.3
-_LETTERS = "qwertyuiopasdfghjklzxcvbnm"
 _NOT_GIVEN = -100
 
 
@@ -171,15 +171,6 @@ def _spoilt(one: TaggedSentence, rng: random.Random) -> TaggedSentence:
     if rng.random() < _SHARE_WITH_SLIPS:
         for _ in range(rng.choice((1, 1, 2))):
             i = rng.randrange(len(words))
-            words[i] = _slip(words[i], rng)
+            words[i] = slip(words[i], rng)
     tags, manners = (tuple(marks[i] for i in kept) if marks else () for marks in (one.tags, one.manners))
     return TaggedSentence(tuple(words), tags, manners)
-
-
-def _slip(word: str, rng: random.Random) -> str:
-    """A word with two letters swapped, one lost or one replaced; a short word stays."""
-    if len(word) < 4:
-        return word
-    i = rng.randrange(1, len(word) - 1)
-    before, after = word[:i], word[i + 1 :]
-    return rng.choice((before + after[0] + word[i] + after[1:], before + after, before + rng.choice(_LETTERS) + after))

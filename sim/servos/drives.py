@@ -110,7 +110,7 @@ class Drives:
     def touch(self) -> None:
         """Recompute the values derived from settings, after a setting has changed."""
         self._quiet, self._rows = False, None
-        in_position = np.isin(self.mode, POSITION_MODES)
+        in_position = np.logical_or.reduce([self.mode == mode for mode in POSITION_MODES])
         self._plain = bool(in_position.all()) and not (
             self.i_gain.any() or self.feedforward_1.any() or self.feedforward_2.any() or self.deadband_tick.any()
         )

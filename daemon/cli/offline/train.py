@@ -18,7 +18,9 @@ if TYPE_CHECKING:
     from mmm_core.training.recipe import Recipe
     from mmm_core.training.run import Run
 
-Stage = Literal["all", "tokenizer", "transformer", "length", "evaluator", "scope", "tagger", "average", "ablation"]
+Stage = Literal[
+    "all", "tokenizer", "transformer", "length", "evaluator", "scope", "tagger", "gestures", "average", "ablation"
+]
 
 
 def train(
@@ -57,6 +59,8 @@ def train(
 
     Example, what divides a sentence into commands: mmmd train tagger --out tagger.safetensors
 
+    Example, what tells which gesture is meant: mmmd train gestures --out gestures.safetensors
+
     Example, the mean of models with one start: mmmd train average --models a.safetensors b.safetensors --out c.safetensors
 
     Example, one choice of the recipe changed at a time: mmmd train ablation --data DIR --precision bf16 --run runs/ablation
@@ -66,6 +70,7 @@ def train(
     Args:
         stage: all of them and a checkpoint, or one; scope builds what refusals rest on again for the run's checkpoint;
             tagger trains what divides sentences into commands, from the marked sentences that ship (50 minutes, no recipe);
+            gestures trains what tells which gesture other words mean, from the phrases that ship (30 minutes, no recipe);
             average writes the mean of --models; ablation trains variants of a recipe and prints what the probes and real
             captions say of each.
         config: name of a recipe that ships, or a TOML file (docs/training.md); compact, or ablation for that stage.
@@ -99,8 +104,8 @@ def train(
         raise CommandError(f"train {stage}: --models is for `mmmd train average`, which needs two of them or more")
     if stage == "average":
         return _average(models, out)
-    if stage == "tagger":
-        return _tagger(out)
+    if stage in ("tagger", "gestures"):
+        return _reader_part(stage, out)
     config = config or ("ablation" if stage == "ablation" else "compact")
     recipe = read_recipe(config, seed)
     if stage == "tokenizer" and recipe.start:
@@ -157,13 +162,17 @@ def _average(models: Sequence[Path], out: Path | None) -> int:
     return 0
 
 
-def _tagger(out: Path | None) -> int:
-    """Train and write the sentence tagger."""
+def _reader_part(stage: Literal["tagger", "gestures"], out: Path | None) -> int:
+    """Train and write the sentence tagger or the gesture classifier."""
+    from mmm_core.training.gesture_training import train_classifier
     from mmm_core.training.tagger_training import train_tagger
 
     if out is None:
-        raise CommandError("train tagger: --out F: the file of the tagger; the shipped one is not overwritten unasked")
-    train_tagger(out)
+        raise CommandError(f"train {stage}: --out F: where the weights go; the shipped file is not overwritten unasked")
+    if stage == "tagger":
+        train_tagger(out)
+    else:
+        train_classifier(out)
     sys.stdout.write(f"{out}\n")
     return 0
 

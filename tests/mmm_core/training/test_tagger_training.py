@@ -11,9 +11,9 @@ from daemon.cli.program import main
 from mmm_core.corpus.marked_sentences import TaggedSentence, load_manner_sentences, load_marked_sentences
 from mmm_core.errors import CheckpointError
 from mmm_core.inference.checkpoint import load_text_encoder, save_tensors
-from mmm_core.inference.tagger_file import load_tagger
+from mmm_core.inference.own_layers_file import load_tagger
 from mmm_core.language.tagged_words import MANNERS, TAGS
-from mmm_core.model.sentence_tagger import SentenceTagger, log_probability
+from mmm_core.model.sentence_tagger import SentenceTagger, log_probability, word_states
 from mmm_core.training.tagger_training import train_tagger
 
 
@@ -21,8 +21,9 @@ def _share_right(tagger: SentenceTagger, sentences: list[TaggedSentence]) -> flo
     encoder = load_text_encoder()
     right: list[bool] = []
     for one in sentences:
+        (states,) = word_states(encoder, tagger.config.n_shared, [one.words])
         for scores, names, marks in zip(
-            log_probability(tagger, encoder, one.words), (TAGS, MANNERS), (one.tags, one.manners), strict=True
+            log_probability(tagger, states), (TAGS, MANNERS), (one.tags, one.manners), strict=True
         ):
             right += [names[int(row.argmax())] == mark for row, mark in zip(scores, marks, strict=False)]
     return sum(right) / len(right)

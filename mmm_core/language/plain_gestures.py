@@ -1,0 +1,115 @@
+"""The plain command of a gesture, in words that the model knows well, with the arm and the number that a command names.
+
+`words/plain_gestures.txt` has a command for each gesture of the corpus. "bang on the hatch twice with your left" means "knock", so
+its plain command is "knock on the door with your left hand two times".
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from dataclasses import replace
+from functools import cache
+
+from mmm_core.language.commands import PlainCommand, Reading
+from mmm_core.language.count_words import count_asked
+from mmm_core.language.limbs import ARMS, limbs_of
+from mmm_core.language.word_tables import pairs
+
+OUTSIDE, SEVERAL = "outside", "several"
+"""Classes of texts that are no gesture of the corpus: what the robot cannot do, and several gestures."""
+_SIDES = {frozenset({"left_arm"}): "left", frozenset({"right_arm"}): "right"}
+_SIDE = re.compile(
+    r"(?<!all )(?<!just )\b(left|right)\b(?!-? ?(?:now|away|here|there|after|before|then|next|up|down|over|on|in|at|$|[,.;!?]))"
+)
+"""A side that is named without a limb: "a left hook"."""
+_ADDS = re.compile(
+    r"\b(?:alternat\w*|in turns?|by turns|one after the other|each|half ?way|all the way|"
+    r"(?:shoulder|waist|hip|chest|head|knee|eye)s?[- ](?:height|high|level)|"
+    r"overhead|above|below|beneath|higher|lower than|(?:as|up) high|low down|down low)\b"
+)
+"""Words for which a plain command has no place: heights, and arms that take turns."""
+
+
+SURE, SURE_OF_ALL = 0.75, 0.96
+"""Least probability of a gesture for a command to be said in plain words, and for a sentence that was divided to be one command."""
+Meant = tuple[str, float]
+"""The likeliest gesture, or class of texts that are none, and its probability."""
+
+
+@cache
+def gestures() -> tuple[str, ...]:
+    """The names of all gestures of the corpus, each with its direction: "knock", "look/up left"."""
+    return tuple(_plain())
+
+
+def plain_command(gesture: str, said: str) -> str:
+    """The plain command of a gesture with the arm and the number of strokes that `said` names.
+
+    Empty where the plain command cannot say what `said` does: a height, arms in turn, or an arm that the gesture does not have.
+
+    Args:
+        gesture: one of `gestures`.
+        said: a command, in any words.
+    """
+    said = said.lower()
+    if _ADDS.search(said):
+        return ""
+    any_arm, one_arm, both_arms = _plain()[gesture]
+    limbs = limbs_of(said)
+    side = _SIDES.get(limbs, "")
+    if not side and one_arm and not gesture.endswith(("left", "right")) and (named := _SIDE.search(said)):
+        side = named[1]
+    if side:
+        command = one_arm.replace("{S}", side)
+    else:
+        command = both_arms if limbs == ARMS and both_arms else any_arm
+    count = count_asked(said)
+    return f"{command} {count} times" if command and count and count > 1 else command
+
+
+def in_plain_words(reading: Reading, whole: Meant, commands: Mapping[str, Meant]) -> Reading:
+    """A reading whose commands are said in plain words where it is likely which gestures they mean.
+
+    Args:
+        reading: the sentence as it was read.
+        whole: what the whole sentence means.
+        commands: what single commands mean, by their words; others stay as they are.
+    """
+    said = [command for step in reading.steps for command in step]
+    if len(said) > 1 and not reading.denied and (one := _plain_words(whole, reading.text, SURE_OF_ALL)):
+        manner = next((command.manner for command in said if not command.manner.plain), said[0].manner)
+        return replace(reading, steps=((PlainCommand(one, manner, limbs_of(one)),),), plain=False)
+    found = {text: words for text, meant in commands.items() if (words := _plain_words(meant, text, SURE))}
+    if not found:
+        return reading
+    steps = tuple(tuple(_said(command, found.get(command.text, "")) for command in step) for step in reading.steps)
+    return replace(reading, steps=steps, plain=False)
+
+
+def is_lost(meant: Meant, of_rest: Meant) -> bool:
+    """Whether the words that were left out named the gesture: the sentence surely means one, the rest of it surely none."""
+    return is_sure_of(meant) and not is_sure_of(of_rest)
+
+
+def is_sure_of(meant: Meant) -> bool:
+    """Whether a gesture is likely enough for its plain command."""
+    return meant[1] >= SURE and meant[0] in _plain()
+
+
+def _plain_words(meant: Meant, said: str, least: float) -> str:
+    gesture, probability = meant
+    return plain_command(gesture, said) if probability >= least and gesture in _plain() else ""
+
+
+def _said(command: PlainCommand, words: str) -> PlainCommand:
+    return replace(command, text=words, limbs=limbs_of(words)) if words else command
+
+
+@cache
+def _plain() -> dict[str, tuple[str, str, str]]:
+    found: dict[str, tuple[str, str, str]] = {}
+    for gesture, said in pairs("plain_gestures"):
+        any_arm, one_arm, both_arms, *_ = [*(part.strip() for part in said.split("|")), "", ""]
+        found[gesture] = any_arm, one_arm, both_arms
+    return found

@@ -1,0 +1,82 @@
+"""Plain commands for gestures, and readings in which they take the place of other words."""
+
+from __future__ import annotations
+
+import pytest
+
+from mmm_core.corpus.families import FAMILIES
+from mmm_core.language.commands import Reading
+from mmm_core.language.limbs import limbs_of
+from mmm_core.language.plain_gestures import (
+    OUTSIDE,
+    SEVERAL,
+    SURE,
+    SURE_OF_ALL,
+    gestures,
+    in_plain_words,
+    plain_command,
+)
+from mmm_core.language.reading import read
+
+
+def test_each_gesture_of_the_corpus_has_a_plain_command() -> None:
+    assert list(gestures()) == [f"{n}/{d}" if d else n for n, f in FAMILIES.items() for d in f.directions or ("",)]
+
+
+def test_a_plain_command_is_read_as_itself() -> None:
+    said = ("x", "with your left hand", "with your right arm", "with both hands", "x three times")
+    for command in filter(None, (plain_command(gesture, words) for gesture in gestures() for words in said)):
+        ((one,),) = read(command).steps
+        assert one.manner.plain
+        assert one.text == command
+
+
+@pytest.mark.parametrize(
+    ("gesture", "said", "command"),
+    [
+        ("knock", "bang on the hatch", "knock on the door"),
+        ("knock", "bang on the hatch twice with your left hand", "knock on the door with your left hand 2 times"),
+        ("knock", "three bangs on the hatch", "knock on the door 3 times"),
+        ("push", "shove it off with both hands", "push forward with both hands"),
+        ("look/left", "what is over there on your left", "look to the left"),
+        ("point/left", "show us the exit on the left with your right hand", "point to the left with your right hand"),
+        ("hook", "a left hook at him", "throw a left hook"),
+        ("wave", "say hello right away", "wave your hand"),
+        ("raise", "left paw up to shoulder height", ""),
+        ("punch", "have a go at the bag with each fist", ""),
+        ("dab", "do that dab thing with your left arm", ""),
+    ],
+)
+def test_arm_and_number_are_kept_or_nothing_is_said(gesture: str, said: str, command: str) -> None:
+    assert plain_command(gesture, said) == command
+
+
+def _words(reading: Reading) -> list[list[str]]:
+    return [[command.text for command in step] for step in reading.steps]
+
+
+def test_a_command_is_said_in_plain_words_where_its_gesture_is_likely() -> None:
+    found = read("very slowly rap at the hatch, then bow")
+    said = found.steps[0][0].text
+    plain = in_plain_words(found, (SEVERAL, 0.99), {said: ("knock", SURE)})
+    assert _words(plain) == [["knock on the door"], [found.steps[1][0].text]]
+    assert plain.steps[0][0].manner == found.steps[0][0].manner
+    assert plain.steps[0][0].limbs == limbs_of("knock on the door")
+    assert plain.text == found.text
+
+
+@pytest.mark.parametrize("meant", [("knock", SURE - 0.01), (OUTSIDE, 0.99), (SEVERAL, 0.99)])
+def test_what_is_unlikely_or_no_gesture_stays(meant: tuple[str, float]) -> None:
+    found = read("rap at the hatch, then bow")
+    assert in_plain_words(found, (SEVERAL, 0.99), {"rap at the hatch": meant}) == found
+
+
+def test_a_sentence_that_is_surely_one_gesture_is_one_command() -> None:
+    found = read("it is your cousin, go on, put your arms round her")
+    whole = in_plain_words(found, ("hug/in", SURE_OF_ALL), {})
+    assert _words(whole) == ([["give a hug"]] if sum(map(len, found.steps)) > 1 else _words(found))
+    several = read("nod, then bow")
+    assert _words(in_plain_words(several, ("bow", SURE_OF_ALL), {})) == [["bow politely"]]
+    assert in_plain_words(several, ("bow", SURE_OF_ALL - 0.01), {}) == several
+    denied = read("do not nod, bow")
+    assert in_plain_words(denied, ("nod", 0.99), {}) == denied
