@@ -112,7 +112,7 @@ def test_a_bus_process_frozen_in_its_start_keeps_no_estop_undone(shared: SharedD
         within(BACK_WITHIN_S, "it starts again", is_frozen_in_its_start)
         name = person.estop()
         within(BACK_WITHIN_S, "it is killed", lambda: gone(frozen[-1]))
-        assert "frozen for" in daemon.said
+        within(BACK_WITHIN_S, "it says why", lambda: "frozen for" in daemon.said)
         assert person.hears(ev.CarriedOut, name, BACK_WITHIN_S)
         within(1.0, "no torque", lambda: not shared.servos.torque)
         with shared.client() as client:

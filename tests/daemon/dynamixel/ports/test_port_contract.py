@@ -98,7 +98,12 @@ def test_closing_twice_is_harmless(port: Port) -> None:
     port.close()
 
 
-def test_the_stock_sdk_pings_reads_writes_and_syncs_the_servos_on_the_tty(tty: Path) -> None:
+def test_the_stock_sdk_pings_reads_writes_and_syncs_the_servos_on_the_tty(
+    tty: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(
+        "dynamixel_sdk.port_handler.LATENCY_TIMER", 1000
+    )  # ms that it waits: 16 are few on a busy machine
     port, handler = PortHandler(str(tty)), PacketHandler(2.0)
     assert port.openPort()
     assert port.setBaudRate(BAUD)
