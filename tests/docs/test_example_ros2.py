@@ -157,9 +157,8 @@ def test_the_bridge_says_cancels_stops_and_publishes(bridge: ModuleType, daemon:
         result = server.execute(cancelled)
         assert cancelled.outcome == "canceled" and result.how == "cancelled"
 
-        robot.wait_for(
-            "holding", timeout_s=10
-        )  # the cancelled motion brakes meanwhile, and says "moving" until it stands
+        # The cancelled motion says "moving" until it stands.
+        robot.wait_for("holding", "idle", timeout_s=10)
         robot.gesture("wave_right", loop=True, wait=False)
         robot.wait_for("moving", timeout_s=10)
         reply = node.services["stop"](None, ros_stand_in.message("Response", "success", "message")())
