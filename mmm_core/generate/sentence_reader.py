@@ -1,11 +1,12 @@
 """Reads sentences: by rules, and where these do not know every word, with a tagger and a classifier above the text encoder.
 
-The tagger divides the sentence and finds its manner, the classifier tells which gestures its words mean.
+The tagger divides the sentence and finds its manner, the classifier tells which gestures its words mean. Both are given a
+sentence or its mirror image, whichever names the right first, so that a mirrored sentence is understood as its mirror image.
 """
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 import torch
@@ -15,6 +16,7 @@ from mmm_core.inference.checkpoint import load_text_encoder
 from mmm_core.inference.onednn_linear import Packing, pack
 from mmm_core.inference.own_layers_file import load_classifier, load_tagger
 from mmm_core.language.commands import Reading
+from mmm_core.language.mirroring import canonical, mirror_words
 from mmm_core.language.plain_gestures import Meant, in_plain_words, is_lost, is_sure_of
 from mmm_core.language.reading import read
 from mmm_core.language.tagged_manner import manner_phrases, with_plain_manner
@@ -26,6 +28,14 @@ from mmm_core.model.text import MAX_WORD_PIECES, MiniLm, strip_emoji
 
 _FIRST_SENTENCE = "nod, and once you have done that, wave to the people who are waiting"
 """A sentence for the tagger, read when it is loaded: the first one takes several times as long as the others."""
+
+
+@dataclass(frozen=True)
+class _Encoded:
+    """States of a sentence, or of its mirror image if `is_image`; the image has the same words but for left and right."""
+
+    words: WordStates
+    is_image: bool
 
 
 class SentenceReader:
@@ -71,9 +81,9 @@ class SentenceReader:
         found = replace(self._divided(words, without_emoji, states), text=text)
         return self._in_plain_words(found, states)
 
-    def _divided(self, words: str, by_rules: Reading, states: WordStates) -> Reading:
+    def _divided(self, words: str, by_rules: Reading, states: _Encoded) -> Reading:
         """The sentence with its words of manner understood, divided into commands."""
-        tags, manners = self._tagged(words, states)
+        tags, manners = self._tagged(states)
         plain = with_plain_manner(words, manner_phrases(words, manners))
         if plain == words:
             return by_rules if is_sure(by_rules) else read_with_tags(by_rules, tags)
@@ -81,9 +91,9 @@ class SentenceReader:
         loses_an_act = names_acts(by_rules) and not names_acts(in_plain)
         if loses_an_act or is_lost(self._meant(states), self._meant(states_of_plain)):
             return by_rules if is_sure(by_rules) else read_with_tags(by_rules, tags)
-        return in_plain if is_sure(in_plain) else read_with_tags(in_plain, self._tagged(plain, states_of_plain)[0])
+        return in_plain if is_sure(in_plain) else read_with_tags(in_plain, self._tagged(states_of_plain)[0])
 
-    def _in_plain_words(self, found: Reading, states: WordStates) -> Reading:
+    def _in_plain_words(self, found: Reading, states: _Encoded) -> Reading:
         """The reading in plain words where it is likely which gestures are meant."""
         unknown = unknown_commands(found)
         if not unknown:
@@ -91,19 +101,32 @@ class SentenceReader:
         whole = self._meant(states)
         if sum(map(len, found.steps)) == 1 and is_sure_of(whole):
             return in_plain_words(found, whole, {unknown[0]: whole})
-        classes = likeliest(self._classifier, self._encoder, unknown)
-        return in_plain_words(found, whole, dict(zip(unknown, classes, strict=True)))
+        images = [canonical(text) for text in unknown]
+        classes = likeliest(self._classifier, self._encoder, [image for image, _ in images])
+        meant = [
+            _seen_in_mirror(what) if mirrored else what for what, (_, mirrored) in zip(classes, images, strict=True)
+        ]
+        return in_plain_words(found, whole, dict(zip(unknown, meant, strict=True)))
 
-    def _meant(self, states: WordStates) -> Meant:
+    def _meant(self, states: _Encoded) -> Meant:
         """What a sentence means."""
-        mask = torch.ones(1, len(states.states), dtype=torch.bool)
-        return likeliest_of_states(self._classifier, states.states[None], mask)[0]
+        words = states.words.states
+        mask = torch.ones(1, len(words), dtype=torch.bool)
+        (meant,) = likeliest_of_states(self._classifier, words[None], mask)
+        return _seen_in_mirror(meant) if states.is_image else meant
 
-    def _states(self, sentence: str) -> WordStates:
-        words = [sentence[start:end] for start, end in words_of(sentence)]
-        return word_states(self._encoder, self._tagger.config.n_shared, [words])[0]
+    def _states(self, sentence: str) -> _Encoded:
+        image, is_image = canonical(sentence)
+        if len(words_of(image)) != len(words_of(sentence)):  # tags are of the sentence's own words
+            image, is_image = sentence, False
+        words = [image[start:end] for start, end in words_of(image)]
+        return _Encoded(word_states(self._encoder, self._tagger.config.n_shared, [words])[0], is_image)
 
-    def _tagged(self, sentence: str, states: WordStates) -> tuple[list[str], NDArray[np.float32]]:
+    def _tagged(self, states: _Encoded) -> tuple[list[str], NDArray[np.float32]]:
         """The likeliest tags of a sentence's words, and the (N, 5) log-probabilities of their manners."""
-        tags, manners = log_probability(self._tagger, states)
+        tags, manners = log_probability(self._tagger, states.words)
         return likeliest_tags(tags.numpy()), manners.numpy()
+
+
+def _seen_in_mirror(meant: Meant) -> Meant:
+    return mirror_words(meant[0]), meant[1]

@@ -88,8 +88,8 @@ def in_plain_words(reading: Reading, whole: Meant, commands: Mapping[str, Meant]
 
 
 def is_lost(meant: Meant, of_rest: Meant) -> bool:
-    """Whether the words that were left out named the gesture: the sentence surely means one, the rest of it surely none."""
-    return is_sure_of(meant) and not is_sure_of(of_rest)
+    """Whether the words that were left out named the gesture: the sentence surely means it, the rest of it probably not."""
+    return is_sure_of(meant) and of_rest[0] != meant[0] and not is_sure_of(of_rest)
 
 
 def is_sure_of(meant: Meant) -> bool:

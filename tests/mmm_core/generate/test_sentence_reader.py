@@ -7,9 +7,10 @@ from pathlib import Path
 
 import pytest
 
-from mmm_core.corpus.heldout import read_sentences
+from mmm_core.corpus.heldout import PROBES, read_sentences
 from mmm_core.generate.sentence_reader import SentenceReader
 from mmm_core.language.commands import Reading
+from mmm_core.language.mirroring import mirror_words
 from mmm_core.language.reading import read
 from tests.support.sizes import few_and_long
 
@@ -94,3 +95,12 @@ def test_a_sentence_is_divided_and_completed(reader: SentenceReader, sentence: s
 )
 def test_what_the_rules_are_sure_of_or_cannot_be_tagged_is_read_as_before(reader: SentenceReader, text: str) -> None:
     assert reader.read(text) == read(text)
+
+
+def test_a_mirrored_sentence_is_read_as_the_mirror_image(reader: SentenceReader) -> None:
+    """Tags and gestures were once those of the sentence itself, so that "left" was understood where "right" was not."""
+    given = [*(probe.text for probe in PROBES), *(s.text for s in read_sentences("words_phrases_dev"))]
+    images = [(text, mirror_words(text)) for text in given if mirror_words(text) != text]
+    assert len(images) > 180
+    wrong = [text for text, image in images if mirror_words(reader.read(text).words) != reader.read(image).words]
+    assert len(wrong) <= 1, wrong  # "Up top, slap my hand with your left": a rule chooses the right hand for "up top"
