@@ -65,7 +65,9 @@ def plain_command(gesture: str, said: str) -> str:
     else:
         command = both_arms if limbs == ARMS and both_arms else any_arm
     count = count_asked(said)
-    return f"{command} {count} times" if command and count and count > 1 else command
+    if not command or not count:
+        return command
+    return f"{command} {count} times" if count > 1 else f"{command} once"
 
 
 def in_plain_words(reading: Reading, whole: Meant, commands: Mapping[str, Meant]) -> Reading:

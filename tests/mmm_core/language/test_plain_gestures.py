@@ -37,6 +37,7 @@ def test_a_plain_command_is_read_as_itself() -> None:
         ("knock", "bang on the hatch", "knock on the door"),
         ("knock", "bang on the hatch twice with your left hand", "knock on the door with your left hand 2 times"),
         ("knock", "three bangs on the hatch", "knock on the door 3 times"),
+        ("march_arms", "go for a march with your arms just once", "march with your arms once"),
         ("push", "shove it off with both hands", "push forward with both hands"),
         ("look/left", "what is over there on your left", "look to the left"),
         ("point/left", "show us the exit on the left with your right hand", "point to the left with your right hand"),
