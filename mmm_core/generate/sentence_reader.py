@@ -109,7 +109,7 @@ class SentenceReader:
         return in_plain_words(found, whole, dict(zip(unknown, meant, strict=True)))
 
     def _meant(self, states: _Encoded) -> Meant:
-        """What a sentence means."""
+        """The gesture that a sentence most likely asks for, with its probability."""
         words = states.words.states
         mask = torch.ones(1, len(words), dtype=torch.bool)
         (meant,) = likeliest_of_states(self._classifier, words[None], mask)

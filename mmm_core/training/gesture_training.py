@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import logging
 import random
 import re
 from collections.abc import Callable, Iterator, Sequence
@@ -11,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import torch
 import torch.nn.functional as F
-from torch import nn
+from torch import Tensor
 
 from mmm_core.corpus.forms import REQUESTS
 from mmm_core.corpus.marked_sentences import load_marked_sentences
@@ -25,25 +24,20 @@ from mmm_core.language.plain_gestures import OUTSIDE, SEVERAL, gestures
 from mmm_core.language.tagged_words import BEGINS, DENIED
 from mmm_core.model.gesture_classifier import ClassifierConfig, GestureClassifier
 from mmm_core.model.text import MiniLm
+from mmm_core.training.own_layers import Rates, copy_layers, fit
 from mmm_core.training.slips import slip
-
-log = logging.getLogger(__name__)
 
 STEPS, BATCH, TOGETHER = 1280, 64, 8
 """Optimisation steps, texts of a batch, and batches that are drawn together, so that each holds texts of similar length."""
-LAYER_RATE, CLASS_RATE, WARM_UP = 2e-4, 2e-3, 50
-"""Learning rates of the copied layers and of the linear layer above them, and steps in which they rise."""
-DROPOUT, SMOOTHING, WEIGHT_DECAY = 0.1, 0.05, 0.02
+RATES = Rates(layers=2e-4, linear=2e-3, warm_up=50)
+DROPOUT, SMOOTHING = 0.1, 0.05
 SEED = 0
-_LOG_EVERY = 50
-_SHARE_OUTSIDE, _SHARE_MARKED, _SHARE_JOINED, _SHARE_WRITTEN, _SHARE_REQUESTED, _SHARE_SLIPS = (
-    0.14,
-    0.12,
-    0.06,
-    0.5,
-    0.12,
-    0.1,
-)
+_SHARE_OUTSIDE, _SHARE_MARKED, _SHARE_JOINED = 0.14, 0.12, 0.06
+"""Shares of texts that are no gesture, that are marked sentences of several commands, and that are joined from two gestures."""
+_SHARE_WRITTEN = 0.5
+"""Share of gestures in phrases of the writers; the others are in phrases of the corpus."""
+_SHARE_REQUESTED, _SHARE_ENDED, _SHARE_SLIPS, _SHARE_LOWER, _SHARE_PUNCTUATED = 0.12, 0.12, 0.1, 0.12, 0.24
+"""Shares of gestures in a request, with a courtesy at the end, with a slip, in lower case, and with capital and full stop."""
 _N_OUTSIDE = 8000
 _JOINS = (" and ", ", then ", " and then ", ", ", " while you ", " after that ", ", and finally ", " but first ")
 _ENDS = (" please", " for me", " now", " for us")
@@ -70,41 +64,20 @@ def train_classifier(
     with torch.random.fork_rng(devices=[]):
         torch.manual_seed(SEED)
         classifier = GestureClassifier(ClassifierConfig(tuple(classes)), encoder.config)
-        for own, layer in zip(classifier.layers, encoder.layers[classifier.config.n_shared :], strict=False):
-            own.load_state_dict(layer.state_dict())
-        _fit(classifier.requires_grad_(True), encoder, _batches(draw), steps)
+        copy_layers(classifier.layers, encoder, classifier.config.n_shared)
+        batches = _batches(draw)
+        fit(classifier, classifier.layers, lambda _step: _loss(classifier, encoder, next(batches)), RATES, steps)
     save_classifier(out, classifier)
     return classifier
 
 
-def _fit(classifier: GestureClassifier, encoder: MiniLm, batches: Iterator[list[tuple[str, str]]], steps: int) -> None:
-    number = {name: i for i, name in enumerate(classifier.config.classes)}
-    optimiser = torch.optim.AdamW(
-        [
-            {"params": classifier.layers.parameters(), "lr": LAYER_RATE},
-            {"params": classifier.gesture.parameters(), "lr": CLASS_RATE},
-        ],
-        weight_decay=WEIGHT_DECAY,
-    )
-    rate = torch.optim.lr_scheduler.LambdaLR(
-        optimiser, lambda step: min(1.0, (step + 1) / WARM_UP) * max(0.02, 1 - step / steps)
-    )
-    classifier.train()
-    for step in range(steps):
-        texts, names = zip(*next(batches), strict=True)
-        ids, mask = encoder.piece_ids(list(texts))
-        with torch.no_grad():
-            states = encoder.lower_states(ids, mask, classifier.config.n_shared)
-        scores = classifier(states, mask, DROPOUT)
-        loss = F.cross_entropy(scores, torch.tensor([number[name] for name in names]), label_smoothing=SMOOTHING)
-        optimiser.zero_grad()
-        loss.backward()
-        nn.utils.clip_grad_norm_(classifier.parameters(), 1.0)
-        optimiser.step()
-        rate.step()
-        if (step + 1) % _LOG_EVERY == 0:
-            log.info("classifier: step %d of %d, loss %.3f", step + 1, steps, float(loss.detach()))
-    classifier.eval().requires_grad_(False)
+def _loss(classifier: GestureClassifier, encoder: MiniLm, batch: Sequence[tuple[str, str]]) -> Tensor:
+    texts, names = zip(*batch, strict=True)
+    ids, mask = encoder.piece_ids(list(texts))
+    with torch.no_grad():
+        states = encoder.lower_states(ids, mask, classifier.config.n_shared)
+    classes = torch.tensor([classifier.config.classes.index(name) for name in names])
+    return F.cross_entropy(classifier(states, mask, DROPOUT), classes, label_smoothing=SMOOTHING)
 
 
 def _batches(draw: Draw) -> Iterator[list[tuple[str, str]]]:
@@ -155,7 +128,7 @@ class Texts:
         share = rng.random()
         if share < _SHARE_REQUESTED:
             said = rng.choice(REQUESTS).replace("{v}", said)
-        elif share < 2 * _SHARE_REQUESTED:
+        elif share < _SHARE_REQUESTED + _SHARE_ENDED:
             said += rng.choice(_ENDS)
         if rng.random() < _SHARE_SLIPS:
             words = said.split()
@@ -163,9 +136,11 @@ class Texts:
             words[i] = slip(words[i], rng)
             said = " ".join(words)
         share = rng.random()
-        if share < _SHARE_REQUESTED:
-            return said.lower(), gesture
-        return (said[0].upper() + said[1:] + rng.choice(_MARKS) if share < 3 * _SHARE_REQUESTED else said), gesture
+        if share < _SHARE_LOWER:
+            said = said.lower()
+        elif share < _SHARE_LOWER + _SHARE_PUNCTUATED:
+            said = said[0].upper() + said[1:] + rng.choice(_MARKS)
+        return said, gesture
 
 
 def _named(gesture: str) -> tuple[str, str]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import logging
 import random
 import re
 from collections.abc import Sequence
@@ -21,18 +20,15 @@ from mmm_core.language.tagged_words import INSIDE, MANNERS, NO_MANNER, TAGS, THE
 from mmm_core.language.word_tables import lines
 from mmm_core.model.sentence_tagger import SentenceTagger, TaggerConfig, WordStates, word_states
 from mmm_core.model.text import MiniLm
+from mmm_core.training.own_layers import Rates, copy_layers, fit
 from mmm_core.training.slips import slip
-
-log = logging.getLogger(__name__)
 
 STEPS, BATCH = 4000, 32
 COPIES = 5
 """Copies of each sentence: one as it is, the others with random slips or without punctuation."""
-LAYER_RATE, TAG_RATE, WARM_UP = 3e-4, 2e-3, 40
-"""Learning rates of the copied layers and of the linear layer above them, and steps in which they rise."""
+RATES = Rates(layers=3e-4, linear=2e-3, warm_up=40)
 DROPOUT, SMOOTHING = 0.15, 0.05
 SEED = 0
-_LOG_EVERY = 100
 _SHARE_WITHOUT_MARKS = _SHARE_WITH_SLIPS = 0.3
 _NOT_GIVEN = -100
 
@@ -86,39 +82,21 @@ def _one_gesture() -> list[TaggedSentence]:
 def _copied(encoder: MiniLm, config: TaggerConfig) -> SentenceTagger:
     """A tagger that begins with copies of the encoder's next layers."""
     tagger = SentenceTagger(config, encoder.config)
-    for own, layer in zip(tagger.layers, encoder.layers[config.n_shared :], strict=False):
-        own.load_state_dict(layer.state_dict())
-    return tagger.requires_grad_(True)
+    copy_layers(tagger.layers, encoder, config.n_shared)
+    return tagger
 
 
 def _fit(tagger: SentenceTagger, encoder: MiniLm, given: list[TaggedSentence], steps: int, rng: random.Random) -> None:
     batches = _batches(encoder, tagger.config.n_shared, given, rng)
-    optimiser = torch.optim.AdamW(
-        [
-            {"params": tagger.layers.parameters(), "lr": LAYER_RATE},
-            {"params": [*tagger.tag.parameters(), *tagger.manner.parameters()], "lr": TAG_RATE},
-        ],
-        weight_decay=0.02,
-    )
-    rate = torch.optim.lr_scheduler.LambdaLR(
-        optimiser, lambda step: min(1.0, (step + 1) / WARM_UP) * max(0.02, 1 - step / steps)
-    )
-    tagger.train()
-    for step in range(steps):
+
+    def loss_of(step: int) -> Tensor:
         if step % len(batches) == 0:
             rng.shuffle(batches)
         states, mask, first_pieces, *marks = batches[step % len(batches)]
-        loss = torch.stack(
-            [_loss(*pair) for pair in zip(tagger(states, mask, first_pieces, DROPOUT), marks, strict=True)]
-        ).sum()
-        optimiser.zero_grad()
-        loss.backward()
-        nn.utils.clip_grad_norm_(tagger.parameters(), 1.0)
-        optimiser.step()
-        rate.step()
-        if (step + 1) % _LOG_EVERY == 0:
-            log.info("tagger: step %d of %d, loss %.3f", step + 1, steps, float(loss.detach()))
-    tagger.eval().requires_grad_(False)
+        scores = tagger(states, mask, first_pieces, DROPOUT)
+        return torch.stack([_loss(*pair) for pair in zip(scores, marks, strict=True)]).sum()
+
+    fit(tagger, tagger.layers, loss_of, RATES, steps)
 
 
 def _loss(scores: Tensor, marks: Tensor) -> Tensor:
