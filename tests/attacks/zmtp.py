@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import select
 import socket
 import struct
+import time
 from types import TracebackType
 from typing import Self
 from urllib.parse import urlsplit
 
 TIMEOUT_S = 10.0
+LOOK_EVERY_S = 0.1
 _GREETING = b"\xff" + bytes(8) + b"\x7f\x03\x00" + b"NULL".ljust(20, b"\0") + bytes(32)
 _MORE, _LONG, _COMMAND = 1, 2, 4
 
@@ -61,12 +64,21 @@ class RawPeer:
         self.socket.close()
 
     def send(self, data: bytes) -> bool:
-        """Send bytes; False once the daemon has closed the connection."""
+        """Send bytes; False once the daemon has closed the connection, or has read nothing for `TIMEOUT_S`.
+
+        The end of the connection is looked for, too: a sender that waits until the receiver has room again is not told of it.
+        """
+        rest, end_s = memoryview(data), time.monotonic() + TIMEOUT_S
         try:
-            self.socket.sendall(data)
+            while rest and time.monotonic() < end_s:
+                to_read, to_write, _ = select.select([self.socket], [self.socket], [], LOOK_EVERY_S)
+                if to_read and not self.socket.recv(1, socket.MSG_PEEK):
+                    return False
+                if to_write:
+                    rest = rest[self.socket.send(rest, socket.MSG_DONTWAIT) :]
         except OSError:
             return False
-        return True
+        return not rest
 
     def _shake_hands(self, kind: str) -> None:
         self.socket.sendall(_GREETING)
