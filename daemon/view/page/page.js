@@ -21,11 +21,6 @@ const SEEN = 0.004; // radians or metres of change that can be seen
 const view = { state: null, robot: null, seenS: 0, history: new History(), joint: 0, run: null, frames: 0, passed: [], drawn: null };
 globalThis.mmmd = view; // for tests and for the curious
 
-let scene = null;
-try { scene = new Scene($("scene")); } catch (error) { $("legend").textContent = `No 3D view: ${error.message}. All else works.`; }
-
-view.scene = scene;
-
 // ---- halts: first of all, and by two ways at once, so that one broken connection does not keep a stop
 const ctl = new Line("ctl", heardCtl);
 function halt(verb, pressedMs) {
@@ -55,6 +50,12 @@ addEventListener("keydown", (e) => {
   e.preventDefault(); halt("stop", e.timeStamp);
 }, true);
 addEventListener("keyup", (e) => { if (e.key === " " && !typing(e.target)) e.preventDefault(); }, true); // a focused button is not pressed
+
+// ---- the 3D view, after the first paint: without a GPU a browser needs a second to compile its shaders
+let scene = null;
+if (!document.hidden) await new Promise((painted) => { requestAnimationFrame(() => setTimeout(painted)); });
+try { scene = new Scene($("scene")); } catch (error) { $("legend").textContent = `No 3D view: ${error.message}. All else works.`; }
+view.scene = scene;
 
 // ---- requests
 const cmd = new Line("cmd", heardCmd, (open) => { if (open) cmd.send({ type: "capabilities", id: newId() }); });
@@ -139,7 +140,7 @@ function heardState(s) {
   view.history.add(s.t_mono, { goal: s.goal_rad, present: s.present_rad, effort: s.effort });
   if (!$("lost").hidden) { lost(""); if (!view.capable) cmd.send({ type: "capabilities", id: newId() }); }
   if (scene && changed(s)) { scene.dirty = true; scene.arrived++; }
-  head(s); queue(s);
+  head(s);
 }
 // Whether a drawing of this state would look different from the one on the screen: a robot at rest is not drawn again.
 function changed(s) {
@@ -152,9 +153,9 @@ function head(s) {
   set("state", s.state, `badge ${["fault", "estop"].includes(s.state) ? "bad" : ["idle", "moving"].includes(s.state) ? "good" : ""}`);
   const generator = s.generator.startsWith("ready") ? "" : `; generator ${s.generator}: gestures work`;
   set("needs", (s.reason || (s.must_arm && s.state === "limp" ? "torque is off; press arm" : NEEDS[s.state])) + generator + (s.recording ? `; recording ${s.recording}` : ""));
-  $("needs").title = $("needs").textContent;
+  if ($("needs").title !== $("needs").textContent) $("needs").title = $("needs").textContent;
   for (const b of $("verbs").children) if (b.dataset.verb === "reset") b.disabled = !["fault", "estop"].includes(s.state);
-  if (document.activeElement !== $("idle")) $("idle").value = s.idle;
+  if (document.activeElement !== $("idle") && $("idle").value !== s.idle) $("idle").value = s.idle;
 }
 function set(id, text, kind) {
   if ($(id).textContent !== text) $(id).textContent = text;
@@ -190,7 +191,7 @@ function listed(event) {
   while ($("events").children.length > 100) $("events").lastChild.remove();
 }
 
-// ---- drawing: only when something has changed, 30 times a second at most, the plots 5 times
+// ---- drawing: only when something has changed, 30 times a second at most; plots and time line 5 times
 async function meet(name) {
   const reply = await get(`/v1/robot/${encodeURIComponent(name)}`);
   if (!reply.ok) { $("legend").textContent = (await reply.json()).found; return; }
@@ -230,7 +231,7 @@ function plots() {
 }
 Object.assign(view, { heard: heardPub, paint, plots }); // a test plays an hour of messages in a minute
 setInterval(paint, 33);
-setInterval(plots, 200);
+setInterval(() => { if (view.state) queue(view.state); plots(); }, 200);
 setInterval(() => {
   if (!view.run && performance.now() / 1000 - view.seenS > LOST_S && $("lost").hidden) {
     lost("The daemon does not answer: nothing here is of now, and the robot may still move. Look at the terminal of `mmmd run`; the page goes on when the daemon is back.");

@@ -17,7 +17,7 @@ export function plot(canvas, { title, unit, rows, series, limits = [], end, seco
   const dense = devicePixelRatio || 1, w = canvas.clientWidth, h = canvas.clientHeight;
   if (!w || !h) return;
   if (canvas.width !== Math.round(w * dense)) { canvas.width = Math.round(w * dense); canvas.height = Math.round(h * dense); }
-  const pen = canvas.getContext("2d");
+  const pen = canvas.getContext("2d", { willReadFrequently: true });
   pen.setTransform(dense, 0, 0, dense, 0, 0); pen.clearRect(0, 0, w, h);
   pen.font = "12px system-ui, sans-serif"; pen.textBaseline = "top";
   const from = end - seconds, seen = rows.filter((r) => r.t >= from && r.t <= end);

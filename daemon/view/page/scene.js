@@ -23,7 +23,8 @@ const BACK = [0.914, 0.929, 0.949];
 export class Scene {
   constructor(canvas) {
     this.canvas = canvas;
-    const gl = this.gl = canvas.getContext("webgl2", { antialias: hasGpu() });
+    const fast = hasGpu();
+    const gl = this.gl = canvas.getContext("webgl2", { alpha: false, antialias: fast });
     if (!gl) throw new Error("this browser has no WebGL 2");
     const program = gl.createProgram();
     for (const [kind, source] of [[gl.VERTEX_SHADER, VERTEX], [gl.FRAGMENT_SHADER, FRAGMENT]]) {
@@ -39,7 +40,7 @@ export class Scene {
     this.block = new Float32Array(20 * MOST_PARTS);
     gl.uniformBlockBinding(program, gl.getUniformBlockIndex(program, "Parts"), 0);
     gl.bindBufferBase(gl.UNIFORM_BUFFER, 0, gl.createBuffer()); gl.bufferData(gl.UNIFORM_BUFFER, this.block.byteLength, gl.DYNAMIC_DRAW);
-    this.dense = Math.min(1.5, devicePixelRatio || 1); this.arrived = 0; this.missed = 0; this.drawnMs = 0;
+    this.dense = fast ? Math.min(1.5, devicePixelRatio || 1) : 0.7; this.arrived = 0; this.missed = 0; this.drawnMs = 0;
     this.reset(); this.listen();
   }
   mesh(vertices, indices, parts) {
