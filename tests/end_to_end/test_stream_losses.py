@@ -92,7 +92,7 @@ def test_bad_messages_are_counted_and_named_and_move_nothing(robot, running):
     try:
         before = dict(robot.status().stream.bad)
         with robot.stream("careful") as stream:
-            rest = robot.status().goal_rad
+            rest = until_still(robot)
             with fed(stream, rest):  # bad messages are no sign of life
                 send_bad_ones(robot, raw, stream)
             assert robot.status().goal_rad == pytest.approx(rest, abs=1e-6)

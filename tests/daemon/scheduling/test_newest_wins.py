@@ -11,6 +11,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from daemon.client.errors import stamp
+from daemon.scheduling.turn_taking import YIELD_S
 from daemon.wire import codec as wire
 from daemon.wire import events as ev
 from daemon.wire.requests import Command, Gesture, Say, tag_of
@@ -107,11 +108,13 @@ def test_an_older_one_that_is_made_later_does_not_take_over_from_a_newer(talk):
 
 
 def test_an_older_one_does_not_set_out_while_a_newer_is_about_to(talk):
-    """Made one after the other by the generator: both within the time that a motion that is ready waits."""
+    """Unless the machine is busy, both are made within the time that a motion that is ready waits."""
     older, newer = (talk.send(Say(text=text, seconds=0.8)) for text in ("wave", "left wave"))
     talk.until_ended(older, newer)
     assert talk.heard[older][-1].by == f"say {newer}" and talk.end(newer) == "done"
-    assert not any(isinstance(e, ev.Progress) for e in talk.heard[older])
+    set_out_s = [e.t_mono for e in talk.heard[older] if isinstance(e, ev.Progress)]
+    accepted_s = [e.t_mono for e in talk.heard[older] if isinstance(e, ev.Accepted)]
+    assert not set_out_s or set_out_s[0] - accepted_s[0] >= YIELD_S
 
 
 def test_a_due_command_ends_those_before_it_and_yields_to_a_newer(talk):
