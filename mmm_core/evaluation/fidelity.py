@@ -108,7 +108,7 @@ def fidelity(
                 continue
             motion = generate(case.text, i)
             of += 1
-            found = _faults(motion, case, counting)
+            found = faults_of(motion, case.gesture, case.text, counting)
             passed += not found
             missed.update(found)
         made, shown = made + passed, shown + of
@@ -130,9 +130,10 @@ def counting_checks(cases: Sequence[Case]) -> list[str]:
     return sorted(check for check, passed in share.items() if passed >= COUNTS_FROM)
 
 
-def _faults(motion: Motion, case: Case, counting: Sequence[str]) -> list[str]:
+def faults_of(motion: Motion, gesture: Gesture, text: str, counting: Sequence[str]) -> list[str]:
+    """The checks that count and that the motion for a text does not pass; "refused" for a motion without frames."""
     if not len(motion.joints_m):
         return ["refused"]
     s = posture_features(motion.joints_m, motion.head_quat_wxyz, motion.forearm_twist_rad)
-    checks = judged(s, case.gesture, case.text)
+    checks = judged(s, gesture, text)
     return [check for check in counting if not checks.get(check, True)]

@@ -16,6 +16,7 @@ from mmm_core.inference.checkpoint import load_text_encoder
 from mmm_core.inference.onednn_linear import Packing, pack
 from mmm_core.inference.own_layers_file import load_classifier, load_tagger
 from mmm_core.language.commands import Reading
+from mmm_core.language.hard_phrases import without_hard_phrases
 from mmm_core.language.mirroring import canonical, mirror_words
 from mmm_core.language.plain_gestures import Meant, in_plain_words, is_lost, is_sure_of
 from mmm_core.language.reading import read
@@ -70,6 +71,9 @@ class SentenceReader:
 
     def read(self, text: str) -> Reading:
         """The commands of a text."""
+        return without_hard_phrases(text, self._read(text))
+
+    def _read(self, text: str) -> Reading:
         by_rules = read(text)
         if by_rules.text != text or not needs_tags(by_rules):
             return by_rules
@@ -99,7 +103,7 @@ class SentenceReader:
         if not unknown:
             return found
         whole = self._meant(states)
-        if sum(map(len, found.steps)) == 1 and is_sure_of(whole):
+        if sum(map(len, found.steps)) == 1 and not found.denied and is_sure_of(whole):  # not what is denied
             return in_plain_words(found, whole, {unknown[0]: whole})
         images = [canonical(text) for text in unknown]
         classes = likeliest(self._classifier, self._encoder, [image for image, _ in images])

@@ -32,7 +32,7 @@ _SINGLE = re.compile(r"\b(?:one time|(?:a|one) single|(?:just|only) one)\b", re.
 _TIMES = re.compile(rf"\b{_NUMBER}\s*(?:times|x)\b", re.IGNORECASE)
 _THINGS = re.compile(
     r"(?<!\bfor )(?<!\bone )(?<!give me )(?<!gimme )(?<!the )(?<!those )(?<!these )(?<!your )(?<!my )(?<!all )(?<!at )"
-    r"(?<!to )(?<!of )(?<!like )"
+    r"(?<!to )(?<!of )(?<!like )(?<!\bon )(?<!\bhad )(?<!\bhas )(?<!\bhave )(?<!\bthan )(?<!\bfrom )(?<!\bbetween )"
     rf"\b{_NUMBER}\s+(?:(?!(?:{_NOT_STROKES})\b)[a-z-]+\s+)?(?!(?:{_NOT_STROKES})\b)[a-z-]+s\b",
     re.IGNORECASE,
 )

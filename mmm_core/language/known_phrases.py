@@ -35,9 +35,13 @@ def key_of(text: str) -> int | None:
     >>> key_of("Do five star jumps!") == key_of("a star jump"), key_of("nod")
     (True, None)
     """
-    words = [stem(word) for word in _WORD.findall(text.lower()) if word not in _SAYS_NOTHING and not word.isdigit()]
-    said = " ".join(words)
+    said = " ".join(significant_words(text))
     return zlib.crc32(said.encode()) if len(said) >= FEWEST_LETTERS else None
+
+
+def significant_words(text: str) -> list[str]:
+    """The stems of the words of a text that say which gesture is meant."""
+    return [stem(word) for word in _WORD.findall(text.lower()) if word not in _SAYS_NOTHING and not word.isdigit()]
 
 
 def is_known_phrase(text: str) -> bool:

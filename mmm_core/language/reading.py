@@ -27,6 +27,7 @@ from mmm_core.language.one_thing import of_one_thing
 from mmm_core.language.requests import everyday, greeting, restated, rewritten, without_request
 from mmm_core.language.run_on import with_marks
 from mmm_core.language.spelling import mended, normalised
+from mmm_core.language.stop_words import after_a_stop
 
 _PAST = re.compile(r"^(?!(?:raised|stretched|crossed|folded|extended|red)\b (?:hand|arm|fist)s?\b)(?!\w*eed\b)\w+ed\b")
 """The verb of "once you have clapped", "if you crossed"."""
@@ -64,7 +65,7 @@ def read(text: str, *, by_rules_alone: bool = False) -> Reading:
         return exact
     if len(text.split(None, MOST_WORDS)) > MOST_WORDS:
         return Reading(text, ((PlainCommand(text),),), plain=True)
-    said = mended(text)
+    said = after_a_stop(mended(text))
     if known := everyday(said) or greeting(said):
         return _known(text, known)
     held = said if by_rules_alone else held_together(said)

@@ -59,6 +59,12 @@ _ACTIVITY = re.compile(
 _NO_ACTIVITIES = frozenset(
     ("anything", "everything", "king", "nothing", "ring", "something", "string", "thing", "wing", "sling")
 )
+_STAYS = frozenset(("stay", "see", "rest", "there", "here"))
+"""Words after a stop that are no command: "stop and stay"."""
+_STOP_FIRST = re.compile(
+    r"\W*(?P<stop>[\w' ]+?)(?:,? (?:and|then)(?: then| now)*|[,.;!]+ (?:now|then|and)) (?P<rest>\w.*)",
+    re.IGNORECASE | re.DOTALL,
+)
 _MOST_WORDS, _MOST_WORDS_OF_ACTIVITY = 14, 5
 _GOES_ON = re.compile(r"\b(and|then|but|instead|start|begin|rather|let|while|before|after|until)\b")
 
@@ -77,6 +83,19 @@ def means_stop(text: str) -> bool:
     return any(word in _STOP_WORDS for word in rest) and all(
         word in _STOP_WORDS or word in _COURTESY or word in _MOTIONS for word in rest
     )
+
+
+def after_a_stop(text: str) -> str:
+    """The command after a stop; a text without both stays as it is. A new command ends the one that is played anyway.
+
+    >>> after_a_stop("stop and look left"), after_a_stop("stop waving and bow")
+    ('look left', 'stop waving and bow')
+    """
+    found = _STOP_FIRST.fullmatch(text)
+    if found is None or _ACTIVITY.search(found["stop"].lower()) or not means_stop(found["stop"]):
+        return text
+    stays = found["rest"].strip(" .!?").lower() in _STAYS or means_stop(found["rest"])
+    return text if stays else found["rest"]
 
 
 def _stop_of(found: re.Match[str]) -> str:

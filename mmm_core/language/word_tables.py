@@ -15,6 +15,7 @@ from mmm_core.language.needed_letters import compiled, letters_of
 _FOLDER = files("mmm_core.language").joinpath("words")
 CORPUS_WORDS_FILE = _FOLDER.joinpath("corpus_words.txt")
 KNOWN_PHRASES_FILE = _FOLDER.joinpath("known_phrases.bin")
+HARD_PHRASES_FILE = _FOLDER.joinpath("hard_phrases.txt")
 LIMB_WORDS_FILE = _FOLDER.joinpath("limb_words.txt")
 ONE_GESTURE_FILE = _FOLDER.joinpath("one_gesture.txt")
 WORD_PAIRS_FILE = _FOLDER.joinpath("word_pairs.txt")

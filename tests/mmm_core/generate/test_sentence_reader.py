@@ -97,10 +97,13 @@ def test_what_the_rules_are_sure_of_or_cannot_be_tagged_is_read_as_before(reader
     assert reader.read(text) == read(text)
 
 
-def test_a_mirrored_sentence_is_read_as_the_mirror_image(reader: SentenceReader) -> None:
+@pytest.mark.parametrize("every", few_and_long([4], [1]))
+def test_a_mirrored_sentence_is_read_as_the_mirror_image(reader: SentenceReader, every: int) -> None:
     """Tags and gestures were once those of the sentence itself, so that "left" was understood where "right" was not."""
     given = [*(probe.text for probe in PROBES), *(s.text for s in read_sentences("words_phrases_dev"))]
     images = [(text, mirror_words(text)) for text in given if mirror_words(text) != text]
     assert len(images) > 180
-    wrong = [text for text, image in images if mirror_words(reader.read(text).words) != reader.read(image).words]
+    wrong = [
+        text for text, image in images[::every] if mirror_words(reader.read(text).words) != reader.read(image).words
+    ]
     assert len(wrong) <= 1, wrong  # "Up top, slap my hand with your left": a rule chooses the right hand for "up top"

@@ -29,7 +29,7 @@ def test_a_number_of_strokes_is_read(text: str, count: int) -> None:
         "once you are done, bow", "bow once more", "wave twice and nod three times", "clap 100 times", "point at the two cars",
         "point at 3 o'clock", "raise one hand", "wave to two people", "show two fingers", "raise your left arm for four beats",
         "stretch like you're six years old", "hold your arms up for three breaths", "cross your arms for five heartbeats",
-        "do the one two punches",
+        "do the one two punches", "drum as if you were on six espressos", "nod like somebody who has had three coffees",
     ],
 )  # fmt: skip
 def test_what_is_no_number_of_strokes_is_not(text: str) -> None:

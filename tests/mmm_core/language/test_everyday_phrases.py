@@ -33,7 +33,7 @@ PHRASES = {
     ),
     'bow politely': (
         'ta', 'much obliged', 'thanks a million', 'thank you kindly', 'thank our guests', 'bend over',
-        "thanks everyone, you're great", 'thank you for coming', "I'm very grateful",
+        "thanks everyone, you're great", 'thank you for coming', "I'm very grateful", 'introduce yourself',
     ),
     'clap your hands': (
         'way to go', 'nailed it', 'good stuff', 'that was great', 'a big hand for the band', 'round of applause please',
@@ -81,7 +81,7 @@ PHRASES = {
         'check left and right',
     ),
     'look straight ahead': (
-        'face me', 'keep your eyes on the road', 'look me in the eye',
+        'face me', 'keep your eyes on the road', 'look me in the eye', 'keep looking at me', 'look straight at me',
     ),
     'lean forward': (
         "lean in, I can't hear you", 'lean closer so you can hear me',
@@ -99,7 +99,7 @@ PHRASES = {
         "I'm so bored", "I'm so tired today", 'what a boring talk',
     ),
     'flex your muscles': (
-        'show us your muscles', "who's a strong robot", 'you look so strong',
+        'show us your muscles', "who's a strong robot", 'you look so strong', 'show off',
     ),
     'celebrate your victory': (
         'party time', 'we did it', 'you won!', "it's my birthday",
@@ -108,7 +108,7 @@ PHRASES = {
         'goal!', 'we scored!', 'hip hip hurray',
     ),
     'dance with one arm after the other': (
-        'bust a move', 'show us your moves', "let's boogie", 'show me some dance moves', "let's see you dance",
+        'bust a move', 'show us your moves', "let's boogie", 'show me some dance moves', "let's see you dance", 'do anything',
     ),
     'give me five with your right hand': (
         'high five!', 'gimme five', 'up top', "don't leave me hanging", 'give me a high five',

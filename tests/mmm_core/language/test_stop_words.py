@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 
 from mmm_core.corpus.families import FAMILIES
 from mmm_core.corpus.families.phrases import read_phrases
+from mmm_core.language.reading import read
 from mmm_core.language.stop_words import means_stop
 
 PAGE = Path(__file__).parents[3] / "docs" / "wire" / "stop_words.md"
@@ -71,3 +72,17 @@ def test_the_corpus_says_none_but_to_stand_still() -> None:
                 said = re.sub(r"\{[^}]*\}|[~^]", "", re.sub(r"\(([^)|]*)\|[^)]*\)", r"\1", phrase))
                 found |= {family} if means_stop(said) else set()
     assert found <= {"stand", "stop"}  # of the stop sign: "whoa", called out without a hand
+
+
+@pytest.mark.parametrize(
+    ("text", "command"),
+    [
+        ("stop and look left", "look to the left"), ("Stop! Now wave with your left hand.", "wave with your left hand"),
+        ("stop then bow", "bow"), ("pause and look left", "look to the left"), ("wait a second and then wave", "wave"),
+        ("stop right there and salute", "salute"), ("stop waving and clap", "clap"), ("stop the traffic", "stop the traffic"),
+        ("stop and stay", "stop and stay"),
+    ],
+)  # fmt: skip
+def test_a_command_after_a_stop_is_read(text: str, command: str) -> None:
+    """The first of these was refused: "it only says not to do 'and look left'"."""
+    assert read(text).words == command
