@@ -21,7 +21,7 @@ from mmm_core.language.word_tables import any_of
 _any = partial(any_of, "denial")
 _DENIES = re.compile(rf"^\W*(?:{_any('before')} )*(?:please )?{_any('not')} (?P<what>.+)$")
 _BETWEEN = re.compile(
-    r"\s*(?:,\s*(?:and |but )?instead\b,?|[,;:.!]+(?=\s|$)|\s-+\s|\bbut(?= )(?! (?:not|no)\b)(?<!anything but)(?<!everything but)(?<!\bnothing but)(?<!\ball but)"
+    r"\s*(?:,\s*(?:and |but )?instead\b,?|[,;:.!?]+(?=\s|$)|\s-+\s|\bbut(?= )(?! (?:not|no)\b)(?<!anything but)(?<!everything but)(?<!\bnothing but)(?<!\ball but)"
     r"|\binstead,? (?!of\b)|\binstead$)\s*"
 )
 _INLINE = re.compile(rf"\s*,?\s*\b(?P<not>{_any('inline')})\s+(?P<what>[^,;:.!]+)")
@@ -71,6 +71,7 @@ _KEEP_STILL = re.compile(
 _DIRECTION_ONLY = re.compile(
     r"^(?:to |at |on )?(?:the |your )?(?:up|down|left|right|forward|forwards|back|backward|backwards)(?: side)?$"
 )
+_SIDEWAYS = re.compile(r"(?:to |at |on )?(?:the |your )?(?P<side>left|right)(?: side)?")
 _WAVED_ASIDE = re.compile(rf"^{_any('waved aside')}$")
 _NO_DENIAL = re.compile(rf"^\W*{_any('no denial')}")
 _KEEP_DOING = re.compile(
@@ -94,6 +95,22 @@ _SAYS_NOT_TO = re.compile(
 """A clause that asks for nothing, whatever it names: "do not warble on the recorder"."""
 _STATES = re.compile(r"^(?!to )\S.*?(?:\b(?:is|are|was|were|am|has|have|had|does|did)\b|'s\b|'re\b)")
 """A finite verb behind a subject."""
+_CANCELLED = re.compile(
+    r"(?P<what>.+?)[,.;]? (?:(?:but|no|oh|ah|actually|wait|hmm|on second thoughts?)[, ]+)*"
+    r"(?:never ?mind|forget (?:it|that|about it)|scrap that|cancel that)(?:[, ]+(?:forget it|never ?mind|thanks?|thank you|sorry|then|now|it is fine))*\W*"
+)
+"""A text that ends by taking all of it back."""
+_THREATENS = re.compile(
+    r"if (?:you|i (?:see|catch) you) (?P<what>(?=.*\b(?:again|one more|once more|another)\b).+?) (?:i|we|there|he|she|they|somebody)\b.*"
+)
+"""'If you bow once more I shall scream.'"""
+_FORBIDDEN = re.compile(
+    r"^(?P<what>.+?) (?:is|are|has been|have been) (?:banned|forbidden|not allowed(?! to)|off limits|off the table|cancelled|prohibited|out of the question)\b.*$"
+)
+_ANY_ARM_BUT = re.compile(
+    r",? (?:with|using) (?:whichever|whatever|any|either) (?:hand|arm|one)(?: you (?:like|want|fancy|please|prefer))?,? "
+    r"(?:(?:so|as|just as) long as it is not|but|except|other than) (?:the|your) (?P<side>left|right)(?: one| hand| arm)?"
+)
 _HAS_SIDE = re.compile(r"\b(?:left|right|both)\b")
 
 
@@ -112,7 +129,7 @@ class Denial:
     anything: bool = False
 
 
-def without_denial(text: str) -> Denial:  # noqa: PLR0912  one branch for each form of denial
+def without_denial(text: str) -> Denial:  # noqa: PLR0912, PLR0915  one branch for each form of denial
     """The text, in lower case and plain spelling, without what it denies.
 
     >>> without_denial("clap, but do not bow")
@@ -125,6 +142,9 @@ def without_denial(text: str) -> Denial:  # noqa: PLR0912  one branch for each f
         return Denial(turned[0], (turned[1],))
     if other := _NOT_USING.match(text):
         return Denial(_with_side(other["rest"], OTHER[other["side"]]), (f"use the {other['side']} hand",))
+    if nothing := _CANCELLED.fullmatch(text) or _THREATENS.fullmatch(text):
+        return Denial("", (nothing["what"],))
+    text = _ANY_ARM_BUT.sub(lambda m: f" with your {OTHER[m['side']]} hand", text)
     denied: list[str] = []
     text = _STOP_AND.sub(r"\1, ", _GO_ON.sub(lambda m: f"{m[1] or m[2]}, ", text))
     for pattern in (_LEAVE, _RESTS):
@@ -140,10 +160,17 @@ def without_denial(text: str) -> Denial:  # noqa: PLR0912  one branch for each f
         clause = part.strip(" ,")
         if not clause:
             continue
+        if (forbidden := _FORBIDDEN.match(clause)) and _is_act(forbidden["what"]):
+            denied.append(forbidden["what"])
+            continue
         found = None if _NO_DENIAL.match(clause) else _DENIES.match(clause)
         if found and (what := found["what"].strip(" ,")):
             if only := denied_side(what):
                 side = only
+                denied.append(what)
+                continue
+            if (way := _SIDEWAYS.fullmatch(what)) and rest and not _HAS_SIDE.search(rest[-1]):
+                rest[-1] = f"{rest[-1]} to the {OTHER[way['side']]}"
                 denied.append(what)
                 continue
             if _WAVED_ASIDE.match(what) or _DIRECTION_ONLY.match(what):
@@ -165,7 +192,8 @@ def without_denial(text: str) -> Denial:  # noqa: PLR0912  one branch for each f
                 denied.append(what)
                 clause = (clause[: inline.start()] + clause[inline.end() :]).strip()
         if not re.fullmatch(
-            r"(?:the|use the|with the|use) other(?: one| hand| arm| way)?|instead|(?:and |but )?that is it|(?:no|oh|hey|well|ok|please)(?:,? (?:no|please|sorry))*",
+            r"(?:the|use the|with the|use) (?:other|opposite)(?: one| hand| arm| way| side| direction)?|instead|(?:and |but )?that is it|"
+            r"(?:no|oh|hey|well|ok|please)(?:,? (?:no|please|sorry))*|(?:will|would|can|could) you|silly|got it|thanks?|not (?:another|one more|a single) \w+(?: \w+){0,4}",
             clause,
         ):
             rest.append(clause)

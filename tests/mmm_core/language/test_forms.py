@@ -203,6 +203,13 @@ class TestDenials:
             ("Don't cover your eyes, it's your ears I want covered.", "cover your ears", ("cover your eyes",)),
             ("No, you're not allowed to clap yet, the glue isn't dry.", "", ("clap yet",)),
             ("Raise your right arm and leave the left one hanging.", "raise your right arm", ("the left arm",)),
+            ("Pull! Who told you to push?", "pull", ("push",)),
+            ("for goodness sake do not bow", "", ("bow",)), ("that's enough of the waving", "", ("waving",)),
+            ("you should wave, oh never mind", "", ("wave",)), ("if you clap once more I'll leave", "", ("clap once more",)),
+            ("nobody's asking you to hug her, bow", "bow", ("hug her",)),
+            ("salute; high fives have been banned here", "salute", ("high five",)), ("stop clapping, will you", "", ("clapping",)),
+            ("turn your head, but not to the left", "turn your head to the right", ("to the left",)),
+            ("wave with whichever hand you like as long as it isn't your left one", "wave with your right hand", ()),
         ],
     )  # fmt: skip
     def test_are_kept(self, text: str, commands: str, denied: tuple[str, ...]) -> None:
