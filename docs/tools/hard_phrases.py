@@ -3,9 +3,10 @@
     python -m docs.tools.hard_phrases out/hard_phrases.jsonl [GESTURE ...]
 
 The model makes a motion for each phrase of the corpus, and one for the plain command of the phrase's gesture. The strict checks of
-`mmmd eval fidelity` judge both. A phrase is hard if its own motion fails and the plain command's passes. All 176
-gestures take an hour of one core. The file keeps a line for each gesture that was measured, so that a run goes on where another
-was cut short. When the model was trained again, delete the file and make the table anew.
+`mmmd eval fidelity` judge both. A phrase is hard if its own motion fails and the plain command's passes. The 176 gestures have
+39,000 phrases, each of which takes a core without matrix units a tenth of a second. The file keeps a line for each gesture that
+was measured, so that a run goes on where another was cut short. When the model was trained again, delete the file and make the
+table anew.
 """
 
 from __future__ import annotations
@@ -26,14 +27,15 @@ from mmm_core.corpus.plain_commands import plain_phrases
 from mmm_core.corpus.withheld import is_withheld
 from mmm_core.evaluation.fidelity import cases_of, counting_checks, faults_of
 from mmm_core.generate.engine import Engine
-from mmm_core.language.hard_phrases import FILE, said_of
+from mmm_core.language.hard_phrases import said_of
 from mmm_core.language.plain_gestures import gestures, plain_command
 from mmm_core.language.reading import read
+from mmm_core.language.word_tables import HARD_PHRASES_FILE
 
 SEED = 7
 _HEAD = (
     "# Phrases of the corpus that the model performs badly; each is said in the plain command of its gesture (plain_gestures.txt).",
-    "# gesture => phrase; made by `python -m docs.tools.hard_phrases`, which measures them all.",
+    "# gesture => phrase; made by `python -m docs.tools.hard_phrases`.",
 )
 
 
@@ -46,11 +48,8 @@ class Said(NamedTuple):
 
 def main(found: Path, wanted: Sequence[str]) -> None:
     """Measure the wanted gestures that are missing in a file, all when none is given; then write the table."""
-    done = (
-        {line["gesture"]: line["hard"] for line in map(json.loads, found.read_text().splitlines())}
-        if found.exists()
-        else {}
-    )
+    lines = found.read_text("utf-8").splitlines() if found.exists() else []
+    done = {line["gesture"]: line["hard"] for line in map(json.loads, lines)}
     _write(())  # each phrase is measured in its own words
     performed = cache(partial(is_performed, Engine.load()))
     for gesture in track([name for name in wanted or gestures() if name not in done], "phrases"):
@@ -95,7 +94,7 @@ def _counting(family: str) -> list[str]:
 
 
 def _write(lines: Sequence[str]) -> None:
-    Path(str(FILE)).write_text("\n".join([*_HEAD, *lines]) + "\n", encoding="utf-8")
+    Path(str(HARD_PHRASES_FILE)).write_text("\n".join([*_HEAD, *lines]) + "\n", encoding="utf-8")
 
 
 def _lines(hard: dict[str, list[str]]) -> list[str]:

@@ -103,7 +103,7 @@ class SentenceReader:
         if not unknown:
             return found
         whole = self._meant(states)
-        if sum(map(len, found.steps)) == 1 and not found.denied and is_sure_of(whole):  # not what is denied
+        if sum(map(len, found.steps)) == 1 and not found.denied and is_sure_of(whole):  # it may name what is denied
             return in_plain_words(found, whole, {unknown[0]: whole})
         images = [canonical(text) for text in unknown]
         classes = likeliest(self._classifier, self._encoder, [image for image, _ in images])

@@ -96,7 +96,7 @@ _SAYS_NOT_TO = re.compile(
 _STATES = re.compile(r"^(?!to )\S.*?(?:\b(?:is|are|was|were|am|has|have|had|does|did)\b|'s\b|'re\b)")
 """A finite verb behind a subject."""
 _CANCELLED = re.compile(
-    r"(?P<what>.+?)[,.;]? (?:(?:but|no|oh|ah|actually|wait|hmm|on second thoughts?)[, ]+)*"
+    r"(?P<what>.+?)(?:[,.;!?]+|(?= (?:but|no|oh|ah|actually|wait|hmm)\b)) (?:(?:but|no|oh|ah|actually|wait|hmm|on second thoughts?)[, ]+)*"
     r"(?:never ?mind|forget (?:it|that|about it)|scrap that|cancel that)(?:[, ]+(?:forget it|never ?mind|thanks?|thank you|sorry|then|now|it is fine))*\W*"
 )
 """A text that ends by taking all of it back."""

@@ -2,8 +2,8 @@
 
 Some phrases of the corpus are too rare for the model to learn, such as "be Katniss"; the gesture that they mean is known
 nevertheless. The table `words/hard_phrases.txt` belongs to the shipped weights: `python -m docs.tools.hard_phrases` measures
-phrases of the corpus.
-`words/near_gestures.txt` has common commands for which the corpus has no gesture, each with the gesture that comes nearest.
+phrases of the corpus. `words/near_gestures.txt` has common commands for which the corpus has no gesture, each with the gesture
+that comes nearest.
 """
 
 from __future__ import annotations
@@ -15,9 +15,8 @@ from mmm_core.language.commands import EXACTLY, PlainCommand, Reading
 from mmm_core.language.known_phrases import significant_words
 from mmm_core.language.limbs import limbs_of
 from mmm_core.language.plain_gestures import plain_command
-from mmm_core.language.word_tables import HARD_PHRASES_FILE, pairs
+from mmm_core.language.word_tables import pairs
 
-FILE = HARD_PHRASES_FILE
 _FEWEST_WORDS, _FEWEST_LETTERS = 2, 8
 """Of a phrase shorter than both, other sentences may be made up by chance."""
 
