@@ -24,6 +24,7 @@ FLAGS = (
     "--hide-scrollbars",
 )  # fmt: skip
 START_S, CALL_S = 30.0, 60.0
+_PAGE_IS_GONE = "Inspected target navigated or closed"
 
 
 def chromium() -> str:
@@ -151,6 +152,8 @@ class Browser:
                     str(answer["params"]["entry"].get("text")) + str(answer["params"]["entry"].get("url"))
                 )
             elif answer.get("id") == self._calls:
+                if answer.get("error", {}).get("message") == _PAGE_IS_GONE:
+                    return {"result": {}}  # the expression was of the page before
                 assert "error" not in answer, answer["error"]
                 return answer.get("result", {})
 
