@@ -129,21 +129,14 @@ class Denial:
     anything: bool = False
 
 
-def without_denial(text: str) -> Denial:  # noqa: PLR0912, PLR0915  one branch for each form of denial
+def without_denial(text: str) -> Denial:  # noqa: PLR0912  one branch for each form of denial
     """The text, in lower case and plain spelling, without what it denies.
 
     >>> without_denial("clap, but do not bow")
     Denial(rest='clap', denied=('bow',), anything=False)
     """
-    kept = _KEEP_DOING.match(text)
-    if kept:
-        return Denial(kept["rest"] or kept["other"])
-    if (turned := opposite(text))[0]:
-        return Denial(turned[0], (turned[1],))
-    if other := _NOT_USING.match(text):
-        return Denial(_with_side(other["rest"], OTHER[other["side"]]), (f"use the {other['side']} hand",))
-    if nothing := _CANCELLED.fullmatch(text) or _THREATENS.fullmatch(text):
-        return Denial("", (nothing["what"],))
+    if (found := _of_whole_text(text)) is not None:
+        return found
     text = _ANY_ARM_BUT.sub(lambda m: f" with your {OTHER[m['side']]} hand", text)
     denied: list[str] = []
     text = _STOP_AND.sub(r"\1, ", _GO_ON.sub(lambda m: f"{m[1] or m[2]}, ", text))
@@ -169,8 +162,7 @@ def without_denial(text: str) -> Denial:  # noqa: PLR0912, PLR0915  one branch f
                 side = only
                 denied.append(what)
                 continue
-            if (way := _SIDEWAYS.fullmatch(what)) and rest and not _HAS_SIDE.search(rest[-1]):
-                rest[-1] = f"{rest[-1]} to the {OTHER[way['side']]}"
+            if _leads_the_other_way(rest, what):
                 denied.append(what)
                 continue
             if _WAVED_ASIDE.match(what) or _DIRECTION_ONLY.match(what):
@@ -204,8 +196,21 @@ def without_denial(text: str) -> Denial:  # noqa: PLR0912, PLR0915  one branch f
     ]
     if not denied:
         return Denial(text if not rest or leaves else _as_it_was(text, rest))
-    joined = ", ".join(rest)
-    return Denial(with_other_side(joined, side), tuple(denied), anything)
+    return Denial(with_other_side(", ".join(rest), side), tuple(denied), anything)
+
+
+def _of_whole_text(text: str) -> Denial | None:
+    """The denial of a form that takes the whole text; None where there is none."""
+    kept = _KEEP_DOING.match(text)
+    if kept:
+        return Denial(kept["rest"] or kept["other"])
+    if (turned := opposite(text))[0]:
+        return Denial(turned[0], (turned[1],))
+    if other := _NOT_USING.match(text):
+        return Denial(_with_side(other["rest"], OTHER[other["side"]]), (f"use the {other['side']} hand",))
+    if nothing := _CANCELLED.fullmatch(text) or _THREATENS.fullmatch(text):
+        return Denial("", (nothing["what"],))
+    return None
 
 
 def denied_side(what: str) -> str:
@@ -247,6 +252,15 @@ def _is_said_again(clause: str, before: list[str]) -> bool:
 def _is_statement(clause: str) -> bool:
     """Whether a clause beside a denial is its reason: "don't clap yet, the teacher is still talking"."""
     return _STATES.search(clause) is not None and not _is_act(clause)
+
+
+def _leads_the_other_way(rest: list[str], what: str) -> bool:
+    """Give the last clause the side opposite to the denied one, if it names none: "turn your head, but not to the left"."""
+    way = _SIDEWAYS.fullmatch(what)
+    if way is None or not rest or _HAS_SIDE.search(rest[-1]):
+        return False
+    rest[-1] = f"{rest[-1]} to the {OTHER[way['side']]}"
+    return True
 
 
 def _is_target(what: str, clause: str, rest: list[str]) -> bool:

@@ -18,7 +18,7 @@ from mmm_core.language.plain_gestures import plain_command
 from mmm_core.language.word_tables import pairs
 
 _FEWEST_WORDS, _FEWEST_LETTERS = 2, 8
-"""Of a phrase shorter than both, other sentences may be made up by chance."""
+"""Number of significant words and of their letters: a phrase that has fewer of both would match other sentences by chance."""
 
 
 def said_of(text: str) -> str:
