@@ -10,10 +10,11 @@ from mmm_core.corpus.families import FAMILIES
 from mmm_core.corpus.heldout import Command
 from mmm_core.corpus.plain_commands import plain_phrases
 from mmm_core.language.inflection import times
+from mmm_core.motion.drawn_circles import drawn_circle, farther_hand, width_m
 from mmm_core.motion.motion import Motion
-from mmm_core.motion.performing import is_cyclic
 from mmm_core.motion.posture_features import posture_features
 from mmm_core.motion.repetitions import body_path, strokes_of
+from mmm_core.motion.sizing import is_cyclic
 from mmm_core.recognition import checks
 
 LEAST_CHANGE = 1.15
@@ -60,7 +61,7 @@ def _pace(motion: Motion, command: Command) -> float:
 
 def _size_ratio(motion: Motion, plain: Motion, command: Command) -> float:
     """How many times larger a motion is than the plain one, by the first measure that both have."""
-    measures = (_stroke_range, _cycle_range_m, _signal_range, _reach)
+    measures = (_stroke_range, _cycle_range_m, _circle_width_m, _signal_range, _reach)
     sizes = ((measure(motion, command), measure(plain, command)) for measure in measures)
     return next((a / b for a, b in sizes if a > 0 and b > 0), 1.0)
 
@@ -79,6 +80,13 @@ def _cycle_range_m(motion: Motion, _command: Command) -> float:
     """Range of one cycle of a motion that repeats, without what leads to it, such as raising the arms; else 0."""
     found = strokes_of(motion)
     return found.range_m if found is not None and is_cyclic(found) else 0.0
+
+
+def _circle_width_m(motion: Motion, _command: Command) -> float:
+    """Width of a circle that a hand draws once; else 0."""
+    hand = farther_hand(motion.joints_m)
+    found = drawn_circle(hand)
+    return 0.0 if found is None else width_m(hand[found[0] : found[1] + 1])
 
 
 def _signal_range(motion: Motion, command: Command) -> float:

@@ -164,7 +164,7 @@ _ACT = _any(
     "giv", "tak", "do", "play", "act", "show", "strik", "thumb", "flex", "high[- ]?fiv", "lower", "put", "let", "bring", "hold", "keep",
     "drop", "place", "extend", "straighten", "sway", "pump", "roll", "nudg", "sink", "glanc", "gaz", "peek", "stare", "shade",
     "cup", "hide", "fist (?:bump|pump)", "hammer", "paint", "brush", "scrub", "pour", "comb", "steer",
-    "uncross", "unfold", "press", "celebrat", "curts", "uppercut", "hook", "drink", "kiss", "listen", "laugh", "pose", "surrender", "rock", "slump", "yawn", "breath", "conduct", "juggl",
+    "uncross", "unfold", "press", "celebrat", "curts", "uppercut", "hook", "drink", "kiss", "listen", "laugh", "pose", "surrender", "rock", "slump", "yawn", "breath", "juggl", "curl", "mop",
 )  # fmt: skip
 SPEAKS_OF_AN_ACT = _pattern(rf"\b{_ACT}\w*")
 BEGINS_WITH_A_VERB = _pattern(rf"^(?:(?:{_MANNER}|to)\s+)*({_ACT})(?:e|p|s|es|d|ping|ing|ding|t|h)?\b")

@@ -12,6 +12,7 @@ from functools import partial
 
 from mmm_core.language.alternatives import opposite
 from mmm_core.language.clause_patterns import SPEAKS_OF_AN_ACT
+from mmm_core.language.completed_at_once import base_of
 from mmm_core.language.ellipsis import OTHER
 from mmm_core.language.known_phrases import is_known_phrase
 from mmm_core.language.limbs import SOME_ARM, is_gesture_verb, limbs_of
@@ -185,7 +186,7 @@ def without_denial(text: str) -> Denial:  # noqa: PLR0912  one branch for each f
                 clause = (clause[: inline.start()] + clause[inline.end() :]).strip()
         if not re.fullmatch(
             r"(?:the|use the|with the|use) (?:other|opposite)(?: one| hand| arm| way| side| direction)?|instead|(?:and |but )?that is it|"
-            r"(?:no|oh|hey|well|ok|please)(?:,? (?:no|please|sorry))*|(?:will|would|can|could) you|silly|got it|thanks?|not (?:another|one more|a single) \w+(?: \w+){0,4}",
+            r"(?:(?:lord|god|goodness|dear) )?(?:no|oh|hey|well|ok|please)(?:,? (?:no|please|sorry))*|(?:will|would|can|could) you|silly|got it|thanks?|not (?:another|one more|a single) \w+(?: \w+){0,4}",
             clause,
         ):
             rest.append(clause)
@@ -277,7 +278,7 @@ def _note(denied: list[str], what: str) -> str:
 
 def _is_act(what: str) -> bool:
     named = SPEAKS_OF_AN_ACT.search(what) or _ACTS_ALSO.search(what) or everyday(what) or is_known_phrase(what)
-    return bool(named or is_gesture_verb(what.partition(" ")[0]))
+    return bool(named or is_gesture_verb(base_of(what.partition(" ")[0])))
 
 
 def _with_side(clause: str, side: str) -> str:

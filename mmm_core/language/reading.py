@@ -117,11 +117,11 @@ def _shown(denied: tuple[str, ...]) -> tuple[str, ...]:
 
 def _referring(bare: str, said: str) -> str:
     """A request with the referent from the words before it: "that way" for a side, "do it" for an act that somebody cannot do."""
-    before = said.removesuffix(bare)
+    before = said.rpartition(bare)[0] if bare else said
     side = re.search(r"\b(?:on|to|from|by) (?:your|the) (left|right)\b(?! (?:hand|arm))", before)
     if side and re.search(r"\b(?:that way|over there|in that direction)\b", bare):
         return re.sub(r"\b(?:that way|over there|in that direction)\b", f"to the {side[1]}", bare, count=1)
-    part = _OWN_PART.search(said.rpartition(bare)[0]) if bare else None
+    part = _OWN_PART.search(before)
     if part is not None and (pronoun := _ACT_ON_IT.match(bare)):
         return f"{pronoun[1]} {part[0]}{bare[pronoun.end() :]}"
     if one := _ONE_OF_THEM.search(bare):

@@ -29,6 +29,8 @@ _FILLERS = re.compile(
 _PAUSE_IN_PHRASE = re.compile(rf"\b(your|the|my|an?|with|to|at|on),? (?:{_FILLER}),? (?=\w)")
 """A pause between an article or preposition and its noun, whose commas divide nothing: "raise your, um, left arm"."""
 _DRAWN_OUT = re.compile(r"([a-z])\1{2,}", re.IGNORECASE)
+_DROPPED_G = re.compile(r"(?<=[a-z]{2})in'$")
+"""The end of "wavin'"."""
 _MARKS = str.maketrans({"’": "'", "‘": "'", "“": '"', "”": '"', "–": "-", "—": ", ", "…": "... ", "´": "'", "`": "'"})  # noqa: RUF001
 
 
@@ -91,10 +93,11 @@ def _chat_words() -> dict[str, str]:
 
 def _chat_word(token: str, words: dict[str, str]) -> str:
     bare = token.strip(',.!?;:"()')
-    if bare not in words or not bare:
+    said = words.get(bare) or _DROPPED_G.sub("ing", bare)
+    if said == bare or not bare:
         return token
     start = token.index(bare)
-    return token[:start] + words[bare] + token[start + len(bare) :]
+    return token[:start] + said + token[start + len(bare) :]
 
 
 def _taken_back(said: str) -> str:

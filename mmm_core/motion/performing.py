@@ -1,44 +1,24 @@
-"""Changes tempo, size, hold and posture of a motion: features are resampled in time, rotations are scaled from rest or added to.
+"""Changes tempo, size, hold and posture of a motion: features are resampled in time, rotations are scaled or added to.
 
-Only root and rotation channels are read; the others are computed by forward kinematics. Arms that repeat a stroke swing
-larger or smaller about the path that the strokes have in common, so that a small wave is still made with a raised hand;
-all other rotations are scaled from their value in the first frame.
+Only root and rotation channels are read; the others are computed by forward kinematics. `sizing` scales the rotations.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import uniform_filter1d
 from scipy.spatial.transform import Rotation
 
 from mmm_core.motion.features import HUMANML3D, features_from_rotations, recover, root_path
 from mmm_core.motion.motion import FPS, Motion
-from mmm_core.motion.repetitions import Strokes, body_path, strokes_of
+from mmm_core.motion.repetitions import body_path
+from mmm_core.motion.sizing import sized
 from mmm_core.motion.skeleton import Array, forward_kinematics, from_six_d, rotation_y, six_d
 
-_TRUNK_HEAD = (3, 6, 9, 12, 15)
 _SPINE, _HEAD = (3, 6, 9), (15,)
-_ARMS = (13, 14, 16, 17, 18, 19, 20, 21)
-MOST_ARM_RAD = 2.9
-"""Radians from the first frame that an enlarged arm joint reaches at most; `_MOST` has other bounds for some joints."""
-_MOST = {18: 2.4, 19: 2.4, 13: 0.6, 14: 0.6}
-"""Radians from the first frame that enlarged elbows and collars reach at most."""
-_SIZED = (*_TRUNK_HEAD, *_ARMS)
-"""Joints whose rotations a size changes."""
-_N_BODY = len(_TRUNK_HEAD)
-_MOST_RAD = np.array([_MOST.get(joint, MOST_ARM_RAD) for joint in _SIZED])
-CYCLE_MISFIT = 0.7
-"""Largest misfit of a cycle whose strokes are scaled about their middle; the model's waves and claps reach it."""
-ROUNDS = 3
-"""Rounds in which arm rotations are scaled anew, until the wrist's path has the requested size."""
-_PATH = 0.35
-"""Exponent of a size below 1 that scales the common path of the strokes: a small stroke is made a little lower."""
-_MOST_FACTOR, _LEAST_WAY_M = 3.0, 0.04
-"""Greatest factor on arm rotations, and metres that a wrist has to move for its size to be corrected."""
 RAMP_FRAMES = 5
 """Frames over which size changes between two commands of a motion."""
 STILL_M_S = 0.2
@@ -92,18 +72,13 @@ def performed(features: NDArray[np.float32], stretches: Sequence[Stretch]) -> tu
         motion = _motion(features[stretch.start : stretch.end])
         if stretch.size != 1.0:
             part = slice(stretch.start, stretch.end)
-            local[part] = _sized(local[part], local[0], stretch, len(features), strokes_of(motion))
+            local[part] = sized(local[part], local[0], motion, stretch.size, _ramp(stretch, len(features)))
         if stretch.trunk_pitch_rad or stretch.head_pitch_rad:
             _lean(local[stretch.start : stretch.end], stretch, len(features))
         places.append(stretch.start + _times(motion, stretch))
     where = np.clip(np.concatenate(places), 0, len(features) - 1)
     ends = np.cumsum([len(p) for p in places]).tolist()
     return _features(yaw, root, local, where), [int(e) for e in ends]
-
-
-def is_cyclic(strokes: Strokes | None) -> bool:
-    """Whether a motion repeats a stroke clearly enough for the stroke to be scaled by itself."""
-    return strokes is not None and len(strokes.frames) > 1 and strokes.misfit <= CYCLE_MISFIT
 
 
 def motion_of(features: NDArray[np.float32]) -> Motion:
@@ -133,66 +108,6 @@ def _features(yaw: Array, root: Array, local: Array, where: Array) -> NDArray[np
     return features_from_rotations(joints, mixed_yaw, rotations, HUMANML3D)
 
 
-def _sized(local: Array, rest: Array, stretch: Stretch, n_frames: int, strokes: Strokes | None) -> Array:
-    """Rotations (T, 22, 3, 3) in the size of a stretch: the angle of each from a reference is multiplied.
-
-    The reference is the first frame; for arms that repeat strokes it is the path of the strokes. A hand's path grows less than
-    the rotations of its arm, so the factor on the rotations is corrected over a few rounds; the round whose path comes nearest
-    to the requested size wins.
-    """
-    period = int(np.median(np.diff(strokes.frames))) if strokes is not None and is_cyclic(strokes) else 0
-    weights = _weights(stretch, n_frames)
-    reference = np.repeat(rest[None, _SIZED], len(local), axis=0)
-    if period:
-        smooth = uniform_filter1d(six_d(local[:, _ARMS]), max(3, period), axis=0, mode="nearest")
-        from_rest = _rotation_vectors(np.swapaxes(rest[_ARMS,], -1, -2) @ from_six_d(smooth))
-        lower = (np.minimum(weights, 1.0) ** _PATH)[:, None, None]
-        reference[:, _N_BODY:] = rest[_ARMS,] @ _matrices(from_rest * lower)
-    away = _rotation_vectors(np.swapaxes(reference, -1, -2) @ local[:, _SIZED])
-    angle = np.linalg.norm(away, axis=-1)
-    most = np.maximum(angle, _MOST_RAD) / np.maximum(angle, 1e-6)
-    way = _way_m(local, period)
-    out = local.copy()
-    body, arms = slice(None, _N_BODY), slice(_N_BODY, None)
-    out[:, _TRUNK_HEAD] = _turned(reference, away, np.minimum(weights[:, None], most), body)
-    found: list[tuple[float, Array]] = []
-    factor = stretch.size
-    for _ in range(ROUNDS):
-        arm_weights = _weights(replace(stretch, size=factor), n_frames)
-        out[:, _ARMS] = _turned(reference, away, np.minimum(arm_weights[:, None], most), arms)
-        if way < _LEAST_WAY_M:
-            return out
-        reached = _way_m(out, period) / way
-        found.append((abs(reached - stretch.size), out.copy()))
-        factor = float(np.clip(factor * stretch.size / max(reached, 0.05), 1 / _MOST_FACTOR, _MOST_FACTOR))
-    return min(found, key=lambda pair: pair[0])[1]
-
-
-def _turned(reference: Array, away: Array, factors: Array, joints: slice) -> Array:
-    """Rotations (T, n, 3, 3) of some joints: the reference, turned by its angles times (T, J) factors."""
-    return reference[:, joints] @ _matrices(away[:, joints] * factors[:, joints, None])
-
-
-def _rotation_vectors(rotations: Array) -> Array:
-    """Rotation vectors (..., 3) of rotations (..., 3, 3)."""
-    return Rotation.from_matrix(rotations.reshape(-1, 3, 3)).as_rotvec().reshape(rotations.shape[:-1])
-
-
-def _matrices(vectors: Array) -> Array:
-    """Rotations (..., 3, 3) of rotation vectors (..., 3)."""
-    return Rotation.from_rotvec(vectors.reshape(-1, 3)).as_matrix().reshape(*vectors.shape, 3)
-
-
-def _way_m(local: Array, period: int) -> float:
-    """Metres that the farther-moving hand goes: from its first position or, with a period, about the path of its strokes."""
-    joints, _ = forward_kinematics(local, np.zeros((len(local), 3)))
-    wrists = joints[:, 20:22]
-    if period:
-        away = wrists - uniform_filter1d(wrists, max(3, period), axis=0, mode="nearest")
-        return float(np.ptp(away, axis=0).max())
-    return float(np.linalg.norm(wrists - wrists[0], axis=-1).max())
-
-
 def _lean(local: Array, stretch: Stretch, n_frames: int) -> None:
     """Add the posture of a stretch to its rotations (T, 22, 3, 3), in place."""
     weights = _ramp(stretch, n_frames)
@@ -200,11 +115,6 @@ def _lean(local: Array, stretch: Stretch, n_frames: int) -> None:
         pitch = Rotation.from_rotvec(np.outer(pitch_rad * weights, [1.0, 0.0, 0.0])).as_matrix()
         for joint in joints:
             local[:, joint] = local[:, joint] @ pitch
-
-
-def _weights(stretch: Stretch, n_frames: int) -> Array:
-    """(T,) factors of size, which change gradually next to another stretch."""
-    return 1.0 + (stretch.size - 1.0) * _ramp(stretch, n_frames)
 
 
 def _ramp(stretch: Stretch, n_frames: int) -> Array:

@@ -47,6 +47,8 @@ def said(text: str) -> str:
         ("no, don't clap yet, Mrs Baird's still talking", " | not: clap yet"),
         ("no need of shaking hands, nod", "nod | not: shaking hands"),
         ("fist bump me but lay off the left hand", "fist bump me with your right hand | not: the left hand"),
+        ("lord no, don't you go beating your chest in my kitchen", " | not: beating your chest in my kitchen"),
+        ("leave off with the clapping", " | not: the clapping"),
         # and what looks like it
         ("no rush, wave", "wave (0.62 times as fast)"), ("don't rush, wave", "wave (0.62 times as fast)"),
         ("lose the hat and wave", "lose the hat, wave"), ("keep off the grass", "keep off the grass"),

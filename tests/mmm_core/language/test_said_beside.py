@@ -10,6 +10,15 @@ from mmm_core.language.reading import read
 @pytest.mark.parametrize(
     ("text", "read_as"),
     [
+        ("raise a glass, though not till you've bowed", "bow; raise a glass"),
+        ("wave, but not before you have clapped", "clap; wave"),
+        ("pour a drink, and as soon as it's poured have a drink of it", "pour a drink; have a drink of it"),
+        ("flex your muscles once you have curled the dumbbells", "curl the dumbbells; flex your muscles"),
+        ("left arm straight out in front of you... grand, swap to the right",
+         "stretch your left arm forward; stretch your right arm forward"),
+        ("right arm up, and then t'other", "raise your right hand; raise your left hand"),
+        ("cover your eyes, there's a jumpscare", "cover your eyes"),
+        ("look over there. Not to the right, the opposite way!", "look to the left"),
         ("nod twice, then shake it once", "nod twice; shake your head once"),
         ("lean left, lean right, then back to the middle", "lean to the left; lean to the right"),
         ("lean over to your right side and then come back and lean to the left", "lean to the right; lean to the left"),

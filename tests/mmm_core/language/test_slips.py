@@ -30,6 +30,8 @@ from mmm_core.language.word_tables import lines
         ("lean foorward, actually no, backwards", "lean backwards"),
         ("look over your left shouldder", "look over your left shoulder"),
         ("bow twics", "bow twice"),
+        ("keep wavin' wi' thi left hand", "keep waving with your left hand"),
+        ("hold the basin", "hold the basin"),
     ],
 )
 def test_a_slip_is_mended_by_the_words_beside_it(slip: str, meant: str) -> None:
