@@ -20,8 +20,15 @@ from mmm_core.language.hard_phrases import without_hard_phrases
 from mmm_core.language.mirroring import canonical, mirror_words
 from mmm_core.language.plain_gestures import Meant, in_plain_words, is_lost, is_sure_of
 from mmm_core.language.reading import read
-from mmm_core.language.tagged_manner import manner_phrases, with_plain_manner
-from mmm_core.language.tagged_reading import is_sure, names_acts, needs_tags, read_with_tags, unknown_commands
+from mmm_core.language.tagged_manner import manner_phrases, with_left_manner, with_plain_manner
+from mmm_core.language.tagged_reading import (
+    is_sure,
+    leaves_words_out,
+    names_acts,
+    needs_tags,
+    read_with_tags,
+    unknown_commands,
+)
 from mmm_core.language.tagged_words import likeliest_tags, words_of
 from mmm_core.model.gesture_classifier import GestureClassifier, likeliest, likeliest_of_states
 from mmm_core.model.sentence_tagger import SentenceTagger, WordStates, log_probability, word_states
@@ -75,20 +82,34 @@ class SentenceReader:
 
     def _read(self, text: str) -> Reading:
         by_rules = read(text)
-        if by_rules.text != text or not needs_tags(by_rules):
+        if by_rules.text != text or not (needs_tags(by_rules) or leaves_words_out(by_rules)):
             return by_rules
         words = strip_emoji(text)
         without_emoji = read(words)
-        if not needs_tags(without_emoji) or not 0 < len(words_of(words)) <= MAX_WORD_PIECES:
+        if not 0 < len(words_of(words)) <= MAX_WORD_PIECES:
             return by_rules
+        if not needs_tags(without_emoji):
+            return self._with_manner_of_other_words(words, by_rules)
         states = self._states(words)
         found = replace(self._divided(words, without_emoji, states), text=text)
         return self._in_plain_words(found, states)
 
+    def _with_manner_of_other_words(self, words: str, by_rules: Reading) -> Reading:
+        """The reading of rules that are sure, with a manner that they left out as words that are not needed."""
+        if not leaves_words_out(by_rules):
+            return by_rules
+        phrases = manner_phrases(words, self._tagged(self._states(words))[1])
+        return with_left_manner(by_rules, words, phrases)
+
     def _divided(self, words: str, by_rules: Reading, states: _Encoded) -> Reading:
         """The sentence with its words of manner understood, divided into commands."""
         tags, manners = self._tagged(states)
-        plain = with_plain_manner(words, manner_phrases(words, manners))
+        phrases = manner_phrases(words, manners)
+        divided = self._in_plain_manner(words, by_rules, states, tags, with_plain_manner(words, phrases))
+        return with_left_manner(divided, words, phrases) if phrases else divided
+
+    def _in_plain_manner(self, words: str, by_rules: Reading, states: _Encoded, tags: list[str], plain: str) -> Reading:
+        """The sentence divided, in its plain manner (`with_plain_manner`) unless that loses an act."""
         if plain == words:
             return by_rules if is_sure(by_rules) else read_with_tags(by_rules, tags)
         in_plain, states_of_plain = read(plain), self._states(plain)

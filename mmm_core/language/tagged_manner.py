@@ -1,19 +1,23 @@
 """Tempo and size in words that the rules do not know: a tagger finds them, and a plain adverb takes their place.
 
-"Bow as if you waded through treacle, then nod" becomes "Bow slowly, then nod", which the rules read.
+"Bow as if you waded through treacle, then nod" becomes "Bow slowly, then nod", which the rules read. Where the gesture would be
+lost without the words ("pump those arms like you're sprinting"), the one command of the sentence takes their manner.
 """
 
 from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import groupby, pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
-from mmm_core.language.reading import read
+from mmm_core.language.commands import PlainCommand, Reading
+from mmm_core.language.limbs import limbs_of
+from mmm_core.language.reading import command_of, read
+from mmm_core.language.spelling import mended
 from mmm_core.language.tagged_words import FAST, LARGE, MANNERS, SLOW, SMALL, words_of
 
 _ADVERBS = {SLOW: "slowly", FAST: "quickly", SMALL: "slightly", LARGE: "hugely"}
@@ -88,6 +92,43 @@ def with_plain_manner(text: str, phrases: Sequence[MannerPhrase]) -> str:
             sentence = _replaced(sentence, phrase.start - start, phrase.end - start, _ADVERBS[phrase.manner])
         said += sentence
     return said
+
+
+def with_left_manner(reading: Reading, text: str, phrases: Sequence[MannerPhrase]) -> Reading:
+    """A reading of one command with the manner of the phrases, where it has none of that kind.
+
+    Commands and denials that are nothing but words of manner are left out before: "let it take its time", "don't you dare rush it".
+    A phrase around a denied act ("less of the drumming") is none.
+    """
+    acts = [set(_words(mended(what))) for what in reading.denied if limbs_of(what)]
+    manners: dict[str, set[str]] = {}
+    for phrase in phrases:
+        words = set(_words(mended(text[phrase.start : phrase.end])))
+        if not any(act <= words for act in acts):
+            manners.setdefault(phrase.manner, set()).update(words)
+    said = set[str]().union(*manners.values())
+    steps = [[c for c in step if not set(_words(c.text)) <= said] for step in reading.steps]
+    steps = [step for step in steps if step] or [list(step) for step in reading.steps]
+    if not manners or sum(map(len, steps)) != 1:
+        return reading
+    ((command,),) = steps
+    for manner in manners:
+        command = _in_manner(command, manner)
+    denied = tuple(what for what in reading.denied if not set(_words(mended(what))) <= said)
+    return replace(reading, steps=((command,),), denied=denied)
+
+
+def _in_manner(command: PlainCommand, manner: str) -> PlainCommand:
+    """A command with a tempo or a size, if it has none."""
+    given = command_of(f"nod {_ADVERBS[manner]}").manner
+    tempo, size = (
+        a if a != 1 else b for a, b in ((command.manner.tempo, given.tempo), (command.manner.size, given.size))
+    )
+    return replace(command, manner=replace(command.manner, tempo=tempo, size=size))
+
+
+def _words(said: str) -> list[str]:
+    return re.findall(r"[a-z]+", said.lower())
 
 
 def _is_understood(text: str, phrase: MannerPhrase) -> bool:

@@ -58,6 +58,8 @@ _BESIDE = re.compile(
 _LONGEST_SURE = 9
 """Words of a command that the rules are sure of, at most."""
 _COMPARES = re.compile(r"\b(?:as if|as though|like)\b")
+_MOST_LEFT_OUT = 4
+"""Words that a sentence has beyond those of its command, at most, without being looked at for words of manner."""
 _ALL = re.compile(r"^(?:all(?: of (?:it|them|that))?|both|everything|each)\b ?")
 
 
@@ -85,6 +87,12 @@ def needs_tags(reading: Reading) -> bool:
     known = all(key_of(command) is None or is_known_phrase(command) for command in commands)
     compares = _COMPARES.search(reading.text) is not None and not any(map(_COMPARES.search, commands))
     return compares or not (known and is_sure(reading))
+
+
+def leaves_words_out(reading: Reading) -> bool:
+    """Whether a sentence of one command has so many other words that some of them may say its manner."""
+    said = [command.text for step in reading.steps for command in step]
+    return len(said) == 1 and len(reading.text.split()) - len(said[0].split()) > _MOST_LEFT_OUT
 
 
 def unknown_commands(reading: Reading) -> list[str]:

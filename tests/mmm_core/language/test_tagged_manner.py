@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from mmm_core.corpus.marked_sentences import read_manner
 from mmm_core.language.reading import read
-from mmm_core.language.tagged_manner import MannerPhrase, manner_phrases, with_plain_manner
+from mmm_core.language.tagged_manner import MannerPhrase, manner_phrases, with_left_manner, with_plain_manner
 from mmm_core.language.tagged_words import MANNERS, words_of
 
 
@@ -80,3 +80,27 @@ def test_of_any_text_the_words_outside_its_phrases_stay_in_order(text: str, data
     outside = [text[a:b] for (a, b), m in zip(spans, manners, strict=True) if not m and text[a].isalnum()]
     said = iter(words_of(changed := with_plain_manner(text, phrases)))
     assert all(any(changed[a:b] == word for a, b in said) for word in outside)
+
+
+@pytest.mark.parametrize(
+    ("marked", "read_as"),
+    [
+        ("pump those arms {fast: like you're sprinting}", "pump those arms like you are sprinting (1.6 times as fast)"),
+        ("brush your teeth, {slow: and don't you dare rush it}", "brush your teeth (0.62 times as fast)"),
+        ("draw a circle in the air, {large: the most humongous one you can manage}",
+         "draw a circle in the air (1.4 times as large)"),
+        ("Nod {slow: very slowly}", "nod (0.55 times as fast)"),
+        ("finger on your lips, and {small: less of the drumming}", "finger on your lips"),
+        ("nod, {large: make it count}, then bow", "nod, make it count; bow"),
+        ("wave at the tiny people", "wave"),
+    ],
+)  # fmt: skip
+def test_the_one_command_of_a_sentence_takes_a_manner_that_its_reading_lacks(marked: str, read_as: str) -> None:
+    sentence, log_probability = _tagged(marked)
+    found = with_left_manner(read(sentence), sentence, manner_phrases(sentence, log_probability))
+    assert "; ".join(found.sentences) == read_as
+
+
+def test_a_denial_that_is_nothing_but_a_manner_denies_nothing() -> None:
+    sentence, log_probability = _tagged("brush your teeth, {slow: and don't you dare rush it}")
+    assert with_left_manner(read(sentence), sentence, manner_phrases(sentence, log_probability)).denied == ()
