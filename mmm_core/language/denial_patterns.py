@@ -1,0 +1,106 @@
+"""Patterns of the words by which English denies, for `mmm_core.language.denial`; `words/denial.txt` has the words.
+
+Texts are in lower case and plain spelling, with single blanks between their words.
+"""
+
+from __future__ import annotations
+
+import re
+from functools import partial
+
+from mmm_core.language.word_tables import any_of
+
+_any = partial(any_of, "denial")
+DENIES = re.compile(rf"^\W*(?:{_any('before')} )*(?:please )?{_any('not')} (?P<what>.+)$")
+BETWEEN = re.compile(
+    r"\s*(?:,\s*(?:and |but )?instead\b,?|[,;:.!?]+(?=\s|$)|\s-+\s|\bbut(?= )(?! (?:not|no)\b)(?<!anything but)(?<!everything but)(?<!\bnothing but)(?<!\ball but)"
+    r"|\binstead,? (?!of\b)|\binstead$)\s*"
+)
+INLINE = re.compile(rf"\s*,?\s*\b(?P<not>{_any('inline')})\s+(?P<what>[^,;:.!]+)")
+GERUND_FIRST = re.compile(
+    r"^\W*(?:instead of|rather than|without) (?P<what>(?:\w+ing)(?: (?:your|the|at|to|with) \w+(?: \w+)?)?|(?:a|an) \w+),? (?=\w)"
+)
+ANYTHING_BUT = re.compile(
+    r"\b(?:anything|everything|whatever(?: \w+){0,2}) (?:but|except(?: for)?|other than|besides|apart from)\b"
+)
+IN_PLACE_OF = re.compile(r"^\W*(?:instead of|rather than|as opposed to|in place of)\b|^not .+, but\b")
+"""Words of contrast, after which even what is no act is not to be done: "wave instead of just standing there"."""
+PLACE = re.compile(
+    r"(?:at|to|towards|with|on|over|above|behind|near|for) (?:(?!your (?:left|right)\b|the (?:left|right)\b)\w+ ?){1,3}$"
+)
+"""A target that is denied: "point, but not at me"."""
+ALWAYS_DENIES = re.compile(rf"{IN_PLACE_OF.pattern}|without (?:moving|using)$|except(?: for)?(?: with)?$")
+GERUND_CLAUSE = re.compile(r"^\W*(?:instead of|rather than|without|no) (?P<what>\w+ing\b[^,;:.]*), (?P<rest>\w.+)$")
+ONE_HAND_FOR_THE_OTHER = re.compile(
+    r"^\W*(?:instead of|rather than|in place of) (?P<what>(?:using )?(?:the|your) (?:left|right)(?: hand| arm)?),? (?P<rest>(?:use|with|take|using)\b.+)$"
+)
+NOT_A_BUT_B = re.compile(
+    r"^\W*not (?!only\b)(?P<what>(?:an?|the|your|with|to)? ?[^,;]+?),? but (?:rather |instead )?(?P<rest>.+)$"
+)
+NOT_THAT_PART = re.compile(
+    r"^\W*not (?P<what>(?:with )?(?:the|your) (?:left|right) (?:hand|arm|shoulder|ear|eye|elbow|knee|cheek|wrist|hip)),? (?P<rest>(?!but\b).*\b(?:left|right) one\b.*)$"
+)
+SIDE_ONLY = re.compile(
+    rf"^(?:{_any('side verb')}\s+)?(?:your |the |that |my )?(?P<side>left|right)(?: (?:hand|arm|one|side|fist|palm|shoulder|ear|eye|elbow|knee|cheek|wrist))?"
+    r"(?: (?:this time|at all|alone|though|please|either|now))?$"
+)
+LEAVE = re.compile(
+    r"(?:,?\s*(?:and|but|while)\s+)?\b(?:leave|keep|leaving|keeping|let)\s+(?:your |the )?(?P<side>left|right) (?:hand|arm|one)\s+"
+    rf"{_any('left alone')}\b,?\s*(?:and\s+)?"
+)
+RESTS = re.compile(
+    rf"(?:,?\s*(?:and|but|while)\s+)?\b(?:your |the )(?P<side>left|right) (?:hand|arm) {_any('rests')}"
+    r"(?=\s*(?:$|,|;|and\b|while\b)),?\s*(?:(?:and|while)\s+)?"
+)
+"""'The left hand rests, wave with the right.'"""
+KEEP_STILL = re.compile(
+    r"(?:,?\s*(?:and|but|while)\s+)?\b(?:keep|keeping|leave|leaving|hold|holding)\s+(?:your |the )?"
+    rf"{_any('kept')}\s+(?:{_any('how still')} )?{_any('kept still')},?\s*(?:and\s+)?"
+    rf"|(?:,?\s*(?:and|but|while)\s+|,\s*)(?:your |the )?(?:{_any('kept')}|(?:left |right )?(?:arm|hand))\s+(?:"
+    r"(?:(?:do|does|should|must|shall|will|may) not|never) (?:to )?(?:move|stir|budge|take part|join in)\b(?: at all)?"
+    rf"|(?:stays?|remains?|(?:is|are) (?:kept|held|to stay)) (?:{_any('how still')} )?(?:still|motionless|put|in place|where (?:it is|they are))(?=$|[,.;])),?"
+)
+DIRECTION_ONLY = re.compile(
+    r"^(?:to |at |on )?(?:the |your )?(?:up|down|left|right|forward|forwards|back|backward|backwards)(?: side)?$"
+)
+SIDEWAYS = re.compile(r"(?:to |at |on )?(?:the |your )?(?P<side>left|right)(?: side)?")
+WAVED_ASIDE = re.compile(rf"^{_any('waved aside')}$")
+NO_DENIAL = re.compile(rf"^\W*{_any('no denial')}")
+KEEP_DOING = re.compile(
+    r"^\W*(?:please )?(?:do not|never) stop (?P<rest>\w.+)$|^\W*(?:please )?do not (?:forget|hesitate) to (?P<other>.+)$"
+)
+ACTS_ALSO = re.compile(rf"\b{_any('act')}\w*")
+NOT_USING = re.compile(
+    r"^\W*(?:please )?(?:do not|never) (?:use|take) (?:your |the )?(?P<side>left|right) (?:hand|arm|one) (?:to|for|when|and) (?P<rest>\w.+)$"
+)
+GO_ON = re.compile(
+    r"^(\W*(?:skip|forget|leave out|never mind|instead of|rather than) [^,]+?),? and (?:go (?:straight|right|directly) (?:to|on to|for)|just|do|give me|instead) "
+    r"|^(\W*(?:skip|forget|leave out|never mind|ditch|scrap|bin|lose|nix|axe|forgo) (?:the|your|that) \w+),? and (?!(?:the|an?|your|no|any|not|all)\b)"
+)
+STOP_AND = re.compile(
+    r"^(\W*(?:please )?(?:stop|quit) \w+ing\b[^,]*?),? and (?!\w+ing\b|(?:left|right|up|down|back|forth|forwards?|out|round)\b|(?:your |the |both |left |right )*(?:hands?|arms?|head|fingers?|fists?|shoulders?)$)(?=\w+ \w)"
+)
+"""'Stop waving and clap your hands' asks for the second; 'stop waving and clapping' for neither."""
+SAYS_NOT_TO = re.compile(
+    rf"^\W*(?:{_any('before')} )*(?:please )?(?:(?:do not|never) (?!(?:mind|rush|hurry|forget|stop|hesitate|worry)\b)\w|(?:stop|no|quit|avoid) \w+ing\b)"
+)
+"""A clause that asks for nothing, whatever it names: "do not warble on the recorder"."""
+STATES = re.compile(r"^(?!to )\S.*?(?:\b(?:is|are|was|were|am|has|have|had|does|did)\b|'s\b|'re\b)")
+"""A finite verb behind a subject."""
+CANCELLED = re.compile(
+    r"(?P<what>.+?)(?:[,.;!?]+|(?= (?:but|no|oh|ah|actually|wait|hmm)\b)) (?:(?:but|no|oh|ah|actually|wait|hmm|on second thoughts?)[, ]+)*"
+    r"(?:never ?mind|forget (?:it|that|about it)|scrap that|cancel that)(?:[, ]+(?:forget it|never ?mind|thanks?|thank you|sorry|then|now|it is fine))*\W*"
+)
+"""A text that ends by taking all of it back."""
+THREATENS = re.compile(
+    r"if (?:you|i (?:see|catch) you) (?P<what>(?=.*\b(?:again|one more|once more|another)\b).+?) (?:i|we|there|he|she|they|somebody)\b.*"
+)
+"""'If you bow once more I shall scream.'"""
+FORBIDDEN = re.compile(
+    r"^(?P<what>.+?) (?:is|are|has been|have been) (?:banned|forbidden|not allowed(?! to)|off limits|off the table|cancelled|prohibited|out of the question)\b.*$"
+)
+ANY_ARM_BUT = re.compile(
+    r",? (?:with|using) (?:whichever|whatever|any|either) (?:hand|arm|one)(?: you (?:like|want|fancy|please|prefer))?,? "
+    r"(?:(?:so|as|just as) long as it is not|but|except|other than) (?:the|your) (?P<side>left|right)(?: one| hand| arm)?"
+)
+HAS_SIDE = re.compile(r"\b(?:left|right|both)\b")
