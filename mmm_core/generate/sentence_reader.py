@@ -18,7 +18,7 @@ from mmm_core.inference.own_layers_file import load_classifier, load_tagger
 from mmm_core.language.commands import Reading
 from mmm_core.language.hard_phrases import without_hard_phrases
 from mmm_core.language.mirroring import canonical, mirror_words
-from mmm_core.language.plain_gestures import Meant, in_plain_words, is_lost, is_sure_of
+from mmm_core.language.plain_gestures import Meant, in_plain_words, is_gesture, is_lost, is_sure_of
 from mmm_core.language.reading import read
 from mmm_core.language.tagged_manner import manner_phrases, with_left_manner, with_plain_manner
 from mmm_core.language.tagged_reading import (
@@ -28,6 +28,7 @@ from mmm_core.language.tagged_reading import (
     needs_tags,
     read_with_tags,
     unknown_commands,
+    without_asides,
 )
 from mmm_core.language.tagged_words import likeliest_tags, words_of
 from mmm_core.model.gesture_classifier import GestureClassifier, likeliest, likeliest_of_states
@@ -131,7 +132,9 @@ class SentenceReader:
         meant = [
             _seen_in_mirror(what) if mirrored else what for what, (_, mirrored) in zip(classes, images, strict=True)
         ]
-        return in_plain_words(found, whole, dict(zip(unknown, meant, strict=True)))
+        by_text = dict(zip(unknown, meant, strict=True))
+        acts = {text: probability if is_gesture(name) else 0.0 for text, (name, probability) in by_text.items()}
+        return in_plain_words(without_asides(found, acts), whole, by_text)
 
     def _meant(self, states: _Encoded) -> Meant:
         """The gesture that a sentence most likely asks for, with its probability."""

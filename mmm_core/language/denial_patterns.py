@@ -104,3 +104,8 @@ ANY_ARM_BUT = re.compile(
     r"(?:(?:so|as|just as) long as it is not|but|except|other than) (?:the|your) (?P<side>left|right)(?: one| hand| arm)?"
 )
 HAS_SIDE = re.compile(r"\b(?:left|right|both)\b")
+SAYS_NOTHING = re.compile(
+    r"(?:the|use the|with the|use) (?:other|opposite)(?: one| hand| arm| way| side| direction)?|instead|(?:and |but )?that is it|"
+    r"(?:(?:lord|god|goodness|dear) )?(?:no|oh|hey|well|ok|please)(?:,? (?:no|please|sorry))*|(?:will|would|can|could) you|silly|got it|thanks?|not (?:another|one more|a single) \w+(?: \w+){0,4}"
+)
+"""Clauses beside a denial that request nothing."""

@@ -94,6 +94,11 @@ def is_lost(meant: Meant, of_rest: Meant) -> bool:
     return is_sure_of(meant) and of_rest[0] != meant[0] and not is_sure_of(of_rest)
 
 
+def is_gesture(name: str) -> bool:
+    """Whether a class is a gesture of the corpus."""
+    return name in _plain()
+
+
 def is_sure_of(meant: Meant) -> bool:
     """Whether a gesture is likely enough for its plain command."""
     return meant[1] >= SURE and meant[0] in _plain()

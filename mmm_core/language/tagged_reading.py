@@ -7,7 +7,8 @@ many writers. Each command that the tags mark is completed with the words that i
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from itertools import chain, pairwise
 
 from mmm_core.language.clause_patterns import BEGINS_WITH_A_VERB, LIMB_FIRST
@@ -57,6 +58,14 @@ _BESIDE = re.compile(
 """Number of strokes and hand of a command."""
 _LONGEST_SURE = 9
 """Words of a command that the rules are sure of, at most."""
+_MAY_BE_A_GESTURE = 0.5
+"""Probability of a gesture from which words without a verb are a command."""
+_DOES_SOMETHING = re.compile(
+    r"^\w+ing\b|^\w+ (?:it|them|that|this)\b|"
+    r"\b(?:left|right|both|other|another|again|up|down|out|forwards?|back|backwards?|times|once|twice|"
+    r"one|two|three|four|five|six|seven|eight|\d+)\b"
+)
+"""Words without a verb that may go on with the command before: a gerund, a side, a direction, a number."""
 _COMPARES = re.compile(r"\b(?:as if|as though|like)\b")
 _MOST_LEFT_OUT = 4
 """Words that a sentence has beyond those of its command, at most, without being looked at for words of manner."""
@@ -108,6 +117,31 @@ def _is_known(command: str) -> bool:
 def names_acts(reading: Reading) -> bool:
     """Whether each command begins with a verb or names a limb, or is a phrase of the corpus."""
     return all(_stands_alone(command.text.lower()) for step in reading.steps for command in step)
+
+
+def without_asides(reading: Reading, meant: Mapping[str, float]) -> Reading:
+    """A reading without commands that are none, beside others or a denial: "missus", "you are grand", "exactly two".
+
+    Such words are no phrase of the corpus, begin with no verb, name neither limb, side, direction nor number, and probably mean no
+    gesture. `notes` names them.
+
+    Args:
+        reading: the reading.
+        meant: of the commands that are no phrases of the corpus, the probability that they mean a gesture.
+    """
+    asides = [
+        text for text, probability in meant.items() if probability < _MAY_BE_A_GESTURE and _is_aside(text.lower())
+    ]
+    kept = tuple(tuple(c for c in step if c.text not in asides) for step in reading.steps)
+    steps = tuple(step for step in kept if step)
+    if not asides or not (steps or reading.denied):
+        return reading
+    notes = tuple(f"'{text}' is no command" for text in asides)
+    return replace(reading, steps=steps, notes=(*reading.notes, *notes), plain=False)
+
+
+def _is_aside(words: str) -> bool:
+    return not (_begins_with_a_verb(words) or _DOES_SOMETHING.search(words) or limbs_of(words))
 
 
 def _is_simple(command: str) -> bool:

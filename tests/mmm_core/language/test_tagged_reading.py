@@ -7,8 +7,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from mmm_core.corpus.marked_sentences import read_marked
+from mmm_core.language.commands import PlainCommand, Reading
 from mmm_core.language.reading import read
-from mmm_core.language.tagged_reading import is_sure, read_with_tags
+from mmm_core.language.tagged_reading import is_sure, read_with_tags, without_asides
 from mmm_core.language.tagged_words import TAGS, words_of
 
 SENTENCES = (
@@ -96,3 +97,34 @@ def test_whatever_the_tags_what_the_rules_deny_stays_denied(sentence: str, data:
     by_rules = read(sentence)
     reading = read_with_tags(by_rules, data.draw(st.lists(st.sampled_from(TAGS), min_size=n_words, max_size=n_words)))
     assert bool(reading.denied) or not by_rules.denied
+
+
+def _reading(steps: list[list[str]], denied: tuple[str, ...] = ()) -> Reading:
+    return Reading("said", tuple(tuple(PlainCommand(text) for text in step) for step in steps), denied)
+
+
+@pytest.mark.parametrize(
+    ("steps", "denied", "kept"),
+    [
+        ([["we will"], ["clap your hands"]], (), [["clap your hands"]]),
+        ([["missus"]], ("folding your arms",), []),
+        ([["hook"], ["a left"]], (), [["hook"], ["a left"]]),
+        ([["clap twice"], ["another three times"]], (), [["clap twice"], ["another three times"]]),
+        ([["cover your mouth"], ["fixing your hat"]], (), [["cover your mouth"], ["fixing your hat"]]),
+        ([["pitch it overhand"]], ("the underhand nonsense",), [["pitch it overhand"]]),
+        ([["missus"]], (), [["missus"]]),
+    ],
+)
+def test_what_is_no_command_is_left_out_beside_one_or_a_denial(
+    steps: list[list[str]], denied: tuple[str, ...], kept: list[list[str]]
+) -> None:
+    given = _reading(steps, denied)
+    found = without_asides(given, {command.text: 0.2 for step in given.steps for command in step})
+    assert [[command.text for command in step] for step in found.steps] == kept
+    assert len(found.notes) == sum(map(len, steps)) - sum(map(len, kept))
+
+
+def test_what_probably_means_a_gesture_is_no_aside() -> None:
+    given = _reading([["the robot dance"], ["clap your hands"]])
+    assert without_asides(given, {"the robot dance": 0.95}) == given
+    assert without_asides(given, {"the robot dance": 0.3}).sentences == ("clap your hands",)
