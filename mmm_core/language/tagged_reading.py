@@ -59,13 +59,11 @@ _BESIDE = re.compile(
 _LONGEST_SURE = 9
 """Words of a command that the rules are sure of, at most."""
 _MAY_BE_A_GESTURE = 0.5
-"""Probability of a gesture from which words without a verb are a command."""
-_DOES_SOMETHING = re.compile(
-    r"^\w+ing\b|^\w+ (?:it|them|that|this)\b|"
-    r"\b(?:left|right|both|other|another|again|up|down|out|forwards?|back|backwards?|times|once|twice|"
-    r"one|two|three|four|five|six|seven|eight|\d+)\b"
+"""Probability of a gesture from which a statement is a command."""
+_STATES = re.compile(
+    r"(?:\w+ ){1,3}(?:is|are|am|was|were|will|would|should|can|could|has|have|had|does|did|may|might|must)\b"
 )
-"""Words without a verb that may go on with the command before: a gerund, a side, a direction, a number."""
+"""Subject and verb of a statement."""
 _COMPARES = re.compile(r"\b(?:as if|as though|like)\b")
 _MOST_LEFT_OUT = 4
 """Words that a sentence has beyond those of its command, at most, without being looked at for words of manner."""
@@ -120,18 +118,18 @@ def names_acts(reading: Reading) -> bool:
 
 
 def without_asides(reading: Reading, meant: Mapping[str, float]) -> Reading:
-    """A reading without commands that are none, beside others or a denial: "missus", "you are grand", "exactly two".
+    """A reading without statements beside commands or a denial ("you are grand"), and without a word left of a denial ("missus").
 
-    Such words are no phrase of the corpus, begin with no verb, name neither limb, side, direction nor number, and probably mean no
-    gesture. `notes` names them.
+    Such words are no phrase of the corpus, begin with no verb, name no limb, and probably mean no gesture. `notes` names them.
 
     Args:
         reading: the reading.
         meant: of the commands that are no phrases of the corpus, the probability that they mean a gesture.
     """
-    asides = [
-        text for text, probability in meant.items() if probability < _MAY_BE_A_GESTURE and _is_aside(text.lower())
-    ]
+    unlikely = [text for text, probability in meant.items() if probability < _MAY_BE_A_GESTURE]
+    asides = [text for text in unlikely if _is_statement(text.lower())]
+    if [[command.text for command in step] for step in reading.steps] == [unlikely] and " " not in unlikely[0]:
+        asides += unlikely if reading.denied and not limbs_of(unlikely[0]) else []
     kept = tuple(tuple(c for c in step if c.text not in asides) for step in reading.steps)
     steps = tuple(step for step in kept if step)
     if not asides or not (steps or reading.denied):
@@ -140,8 +138,8 @@ def without_asides(reading: Reading, meant: Mapping[str, float]) -> Reading:
     return replace(reading, steps=steps, notes=(*reading.notes, *notes), plain=False)
 
 
-def _is_aside(words: str) -> bool:
-    return not (_begins_with_a_verb(words) or _DOES_SOMETHING.search(words) or limbs_of(words))
+def _is_statement(words: str) -> bool:
+    return _STATES.match(words) is not None and not (_begins_with_a_verb(words) or limbs_of(words))
 
 
 def _is_simple(command: str) -> bool:
