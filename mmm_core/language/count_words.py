@@ -22,7 +22,7 @@ _NUMBER = rf"({'|'.join(NUMBERS)})"
 _NOT_STROKES = (
     "arms?|hands?|fists?|palms?|fingers?|thumbs?|eyes?|ears?|elbows?|shoulders?|wrists?|knees?|legs?|feet|foot|heads?|sides?|"
     "s|secs?|seconds?|minutes?|degrees?|met(?:er|re)s?|cm|inch(?:es)?|people|persons?|things?|others?|us|of|or|to|and|"
-    "hours?|days?|weeks?|months?|years?|beats?|heartbeats?|counts?|breaths?|bars?|measures?"
+    "balls|oranges|plates|pins|hours?|days?|weeks?|months?|years?|beats?|heartbeats?|counts?|breaths?|bars?|measures?"
 )
 _ONCE = re.compile(
     rf"(?<!\bat )\b({'|'.join(ADVERBS)})\b(?! (?:more|again|upon|you|he|she|it|that|this|the|i|they|we)\b)",

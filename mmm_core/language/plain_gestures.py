@@ -24,11 +24,12 @@ _SIDE = re.compile(
 )
 """A side that is named without a limb: "a left hook"."""
 _ADDS = re.compile(
-    r"\b(?:alternat\w*|in turns?|by turns|one after the other|each|half ?way|all the way|"
+    r"\b(?:each|half ?way|all the way|"
     r"(?:shoulder|waist|hip|chest|head|knee|eye)s?[- ](?:height|high|level)|"
     r"overhead|above|below|beneath|higher|lower than|(?:as|up) high|low down|down low)\b"
 )
-"""Words for which a plain command has no place: heights, and arms that take turns."""
+"""Words for which a plain command has no place: heights, and numbers for each arm."""
+_IN_TURN = re.compile(r"\b(?:alternat\w*|in turns?|by turns|one after the other)\b")
 
 
 SURE, SURE_OF_ALL = 0.75, 0.96
@@ -55,12 +56,14 @@ def plain_command(gesture: str, said: str) -> str:
     said = said.lower()
     if _ADDS.search(said):
         return ""
-    any_arm, one_arm, both_arms = _plain()[gesture]
+    any_arm, one_arm, both_arms, in_turn = _plain()[gesture]
     limbs = limbs_of(said)
     side = _SIDES.get(limbs, "")
     if not side and one_arm and not gesture.endswith(("left", "right")) and (named := _SIDE.search(said)):
         side = named[1]
-    if side:
+    if _IN_TURN.search(said):
+        command = in_turn
+    elif side:
         command = one_arm.replace("{S}", side)
     else:
         command = both_arms if limbs == ARMS and both_arms else any_arm
@@ -114,9 +117,10 @@ def _said(command: PlainCommand, words: str) -> PlainCommand:
 
 
 @cache
-def _plain() -> dict[str, tuple[str, str, str]]:
-    found: dict[str, tuple[str, str, str]] = {}
+def _plain() -> dict[str, tuple[str, str, str, str]]:
+    """Of each gesture the command that names no arm, one arm, both arms, and the arms in turn; empty where it has none."""
+    found: dict[str, tuple[str, str, str, str]] = {}
     for gesture, said in pairs("plain_gestures"):
-        any_arm, one_arm, both_arms, *_ = [*(part.strip() for part in said.split("|")), "", ""]
-        found[gesture] = any_arm, one_arm, both_arms
+        any_arm, one_arm, both_arms, in_turn, *_ = [*(part.strip() for part in said.split("|")), "", "", ""]
+        found[gesture] = any_arm, one_arm, both_arms, in_turn
     return found

@@ -118,7 +118,7 @@ def names_acts(reading: Reading) -> bool:
 
 
 def without_asides(reading: Reading, meant: Mapping[str, float]) -> Reading:
-    """A reading without statements beside commands or a denial ("you are grand"), and without a word left of a denial ("missus").
+    """A reading without statements beside commands or a denial: "you are grand", "he will feel at home".
 
     Such words are no phrase of the corpus, begin with no verb, name no limb, and probably mean no gesture. `notes` names them.
 
@@ -128,8 +128,6 @@ def without_asides(reading: Reading, meant: Mapping[str, float]) -> Reading:
     """
     unlikely = [text for text, probability in meant.items() if probability < _MAY_BE_A_GESTURE]
     asides = [text for text in unlikely if _is_statement(text.lower())]
-    if [[command.text for command in step] for step in reading.steps] == [unlikely] and " " not in unlikely[0]:
-        asides += unlikely if reading.denied and not limbs_of(unlikely[0]) else []
     kept = tuple(tuple(c for c in step if c.text not in asides) for step in reading.steps)
     steps = tuple(step for step in kept if step)
     if not asides or not (steps or reading.denied):

@@ -107,7 +107,7 @@ def _reading(steps: list[list[str]], denied: tuple[str, ...] = ()) -> Reading:
     ("steps", "denied", "kept"),
     [
         ([["we will"], ["clap your hands"]], (), [["clap your hands"]]),
-        ([["missus"]], ("folding your arms",), []),
+        ([["you are grand"]], ("rubbing your hands",), []),
         ([["hook"], ["a left"]], (), [["hook"], ["a left"]]),
         ([["clap twice"], ["another three times"]], (), [["clap twice"], ["another three times"]]),
         ([["cover your mouth"], ["fixing your hat"]], (), [["cover your mouth"], ["fixing your hat"]]),
