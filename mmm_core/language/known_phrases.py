@@ -20,6 +20,10 @@ from mmm_core.language.word_tables import KNOWN_PHRASES_FILE
 FEWEST_LETTERS = 8
 """Least number of letters in a phrase: the classifier judges single short words."""
 _WORD = re.compile(r"[a-z']+|\d+")
+_SUBJECT = re.compile(
+    r"^\s*(?:(?:the|an?|this|some) (?:\w+ )?(?:person|man|woman|human|humanoid|robot|character|figure)|someone|somebody) (?=(?:is )?\w+(?:s|ing)\b)"
+)
+"""The subject of a caption: "this person shifts from foot to foot"."""
 _SAYS_NOTHING = frozenset(
     (
         "a an the your my his her its their both one of left right please robot now do does doing perform make give me us show "
@@ -41,7 +45,8 @@ def key_of(text: str) -> int | None:
 
 def significant_words(text: str) -> list[str]:
     """The stems of the words of a text that say which gesture is meant."""
-    return [stem(word) for word in _WORD.findall(text.lower()) if word not in _SAYS_NOTHING and not word.isdigit()]
+    said = _SUBJECT.sub("", text.lower())
+    return [stem(word) for word in _WORD.findall(said) if word not in _SAYS_NOTHING and not word.isdigit()]
 
 
 def is_known_phrase(text: str) -> bool:

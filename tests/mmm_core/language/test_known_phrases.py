@@ -22,6 +22,7 @@ from mmm_core.language.word_tables import KNOWN_PHRASES_FILE
         "water the plants",
         "write an email",
         "hit the heavy bag",
+        "this person shifts from one foot to the other",
     ],
 )
 def test_a_phrase_of_the_corpus_is_accepted(engine: Engine, text: str) -> None:
