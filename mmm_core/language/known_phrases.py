@@ -21,7 +21,8 @@ FEWEST_LETTERS = 8
 """Least number of letters in a phrase: the classifier judges single short words."""
 _WORD = re.compile(r"[a-z']+|\d+")
 _SUBJECT = re.compile(
-    r"^\s*(?:(?:the|an?|this|some) (?:\w+ )?(?:person|man|woman|human|humanoid|robot|character|figure)|someone|somebody) (?=(?:is )?\w+(?:s|ing)\b)"
+    r"^\s*(?:(?:the|an?|this|some) (?:\w+ )?(?:person|man|woman|human|humanoid|robot|character|figure)|someone|somebody)"
+    r" (?=(?:is )?\w+(?:s|ing)\b)"
 )
 """The subject of a caption: "this person shifts from foot to foot"."""
 _SAYS_NOTHING = frozenset(

@@ -25,7 +25,7 @@ def test_each_gesture_has_phrases_and_no_phrase_has_two_gestures() -> None:
     assert len(every) - len(set(every)) < 0.01 * len(every)
 
 
-@pytest.mark.parametrize("name", ["dev", "test", "test_1", "seen", "phrases_dev", "phrases_test"])
+@pytest.mark.parametrize("name", ["dev", "test", "test_1", "test_2", "seen", "phrases_dev", "phrases_test"])
 def test_no_phrase_is_a_sentence_of_a_set_that_measures(name: str) -> None:
     every = {_letters(phrase) for phrases in load_written_phrases().values() for phrase in phrases}
     assert not every & {_letters(sentence.text) for sentence in read_sentences(f"words_{name}")}
