@@ -27,7 +27,7 @@ from mmm_core.model.text import MiniLm
 from mmm_core.training.own_layers import Rates, copy_layers, fit
 from mmm_core.training.slips import slip
 
-STEPS, BATCH, TOGETHER = 1280, 64, 8
+STEPS, BATCH, TOGETHER = 2000, 64, 8
 """Optimisation steps, texts of a batch, and batches that are drawn together, so that each holds texts of similar length."""
 RATES = Rates(layers=2e-4, linear=2e-3, warm_up=50)
 DROPOUT, SMOOTHING = 0.1, 0.05
