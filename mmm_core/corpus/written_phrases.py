@@ -1,6 +1,6 @@
 """Phrases by which people ask for the gestures of the corpus, beyond those of its captions: what the gesture classifier learns from.
 
-The captions' phrases (`mmm_core/corpus/phrases`) are patterns with slots. These are single phrases of five writers, 35 for each gesture,
+The captions' phrases (`mmm_core/corpus/phrases`) are patterns with slots. These are single phrases of nine writers, 69 for each gesture,
 one a line: the gesture, " => ", the phrase.
 """
 
