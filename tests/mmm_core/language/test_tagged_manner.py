@@ -95,7 +95,7 @@ def test_of_any_text_the_words_outside_its_phrases_stay_in_order(text: str, data
         ("wave at the tiny people", "wave"),
     ],
 )  # fmt: skip
-def test_the_one_command_of_a_sentence_takes_a_manner_that_its_reading_lacks(marked: str, read_as: str) -> None:
+def test_the_only_command_takes_a_manner_that_its_reading_lacks(marked: str, read_as: str) -> None:
     sentence, log_probability = _tagged(marked)
     found = with_left_manner(read(sentence), sentence, manner_phrases(sentence, log_probability))
     assert "; ".join(found.sentences) == read_as

@@ -54,7 +54,7 @@ def test_what_is_no_circle_is_not_found(hand: np.ndarray) -> None:
 
 
 @pytest.mark.parametrize("factor", [1.4, 0.6])
-def test_a_drawn_circle_takes_the_size_that_is_asked_for_and_stays_where_it_is(factor: float) -> None:
+def test_a_drawn_circle_takes_the_size_asked_for_and_stays_in_place(factor: float) -> None:
     plain = shipped_engine().generate("draw a circle in the air", seed=0).motion
     sized = motion_of(performed(plain.features, [Stretch(0, len(plain.features), size=factor)])[0])
     before, after = (farther_hand(motion.joints_m) for motion in (plain, sized))
