@@ -77,6 +77,8 @@ B_AFTER_A = _pattern(
     r"(.+?),?\s+(?:(?:right|just|only|once)\s+)*"
     + _any(
         "comes? after",
+        "(?:straight |right )?off the back of",
+        "(?:hot |close )?on the heels of",
         "after",
         "succeeds",
         "follows",

@@ -85,7 +85,9 @@ SAYS_NOT_TO = re.compile(
     rf"^\W*(?:{_any('before')} )*(?:please )?(?:(?:do not|never) (?!(?:mind|rush|hurry|forget|stop|hesitate|worry)\b)\w|(?:stop|no|quit|avoid) \w+ing\b)"
 )
 """A clause that asks for nothing, whatever it names: "do not warble on the recorder"."""
-STATES = re.compile(r"^(?!to )\S.*?(?:\b(?:is|are|was|were|am|has|have|had|does|did)\b|'s\b|'re\b)")
+STATES = re.compile(
+    r"^(?!to )\S.*?(?:\b(?:is|are|was|were|am|has|have|had|does|did)\b|'s\b|'re\b)|^(?:the|my|our|his|her|their) \w+ \w+s\b(?! on\b)"
+)
 """A finite verb behind a subject."""
 CANCELLED = re.compile(
     r"(?P<what>.+?)(?:[,.;!?]+|(?= (?:but|no|oh|ah|actually|wait|hmm)\b)) (?:(?:but|no|oh|ah|actually|wait|hmm|on second thoughts?)[, ]+)*"
@@ -106,6 +108,6 @@ ANY_ARM_BUT = re.compile(
 HAS_SIDE = re.compile(r"\b(?:left|right|both)\b")
 SAYS_NOTHING = re.compile(
     r"(?:the|use the|with the|use) (?:other|opposite)(?: one| hand| arm| way| side| direction)?|instead|(?:and |but )?that is it|"
-    r"(?:(?:lord|god|goodness|dear) )?(?:no|oh|hey|well|ok|please)(?:,? (?:no|please|sorry))*|(?:will|would|can|could) you|silly|got it|thanks?|not (?:another|one more|a single) \w+(?: \w+){0,4}"
+    r"(?:(?:lord|god|goodness|dear) )?(?:no|oh|hey|well|ok|please)(?:,? (?:no|please|sorry))*|(?:will|would|can|could) you|silly|got it|thanks?|for \w+(?:'s)? sake|not (?:another|one more|a single) \w+(?: \w+){0,4}"
 )
 """Clauses beside a denial that request nothing."""
