@@ -123,8 +123,7 @@ def test_a_robot_at_rest_is_not_drawn_again(page: Page) -> None:
     before = browser.js("mmmd.frames")
     browser.wait(lambda: browser.js(states) > 40, "another second", SOON_S)
     assert browser.js("mmmd.frames") == before
-    browser.js("document.querySelector('#loop').checked = true")  # a busy machine draws few frames of a short motion
-    page.say("wave with your left hand")
+    page.moving()
     browser.wait(lambda: browser.js("mmmd.frames") > before + 5, "the motion", SOON_S)
 
 
