@@ -2,7 +2,7 @@
 
 `python -m docs.tools.clone_figures`: seconds of `make setup`, of `make demo` after it, and of both; megabytes on disk. What is
 downloaded comes from the index that pip is configured for, and from pip's cache. `--suite 3`: seconds of `make test`, the longest
-and each, and how many runs had a test that failed at first.
+and each, how many runs had a test that failed at first, and the names of these tests.
 """
 
 from __future__ import annotations
@@ -44,7 +44,11 @@ def _suite(clone: Path, runs: int) -> dict[str, Any]:
     made = [_made(clone, "test") for _ in range(runs)]
     seconds = [round(took_s, 1) for took_s, _ in made]
     failed = sum(bool(re.search(r"\d+ (failed|error)", said)) for _, said in made)
-    return {"seconds": max(seconds), "each_s": seconds, "failed_at_first": failed, "n": runs, "cores": os.cpu_count()}
+    names = sorted({name for _, said in made for name in re.findall(r"^(?:FAILED|ERROR) (\S+)", said, re.MULTILINE)})
+    return {
+        "seconds": max(seconds), "each_s": seconds, "failed_at_first": failed, "failed": names, "n": runs,
+        "cores": os.cpu_count(),
+    }  # fmt: skip
 
 
 def _made(clone: Path, target: str) -> tuple[float, str]:
