@@ -111,13 +111,12 @@ class SentenceReader:
 
     def _in_plain_manner(self, words: str, by_rules: Reading, states: _Encoded, tags: list[str], plain: str) -> Reading:
         """The sentence divided, in its plain manner (`with_plain_manner`) unless that loses an act."""
-        if plain == words:
-            return by_rules if is_sure(by_rules) else read_with_tags(by_rules, tags)
-        in_plain, states_of_plain = read(plain), self._states(plain)
-        loses_an_act = names_acts(by_rules) and not names_acts(in_plain)
-        if loses_an_act or is_lost(self._meant(states), self._meant(states_of_plain)):
-            return by_rules if is_sure(by_rules) else read_with_tags(by_rules, tags)
-        return in_plain if is_sure(in_plain) else read_with_tags(in_plain, self._tagged(states_of_plain)[0])
+        if plain != words:
+            in_plain, states_of_plain = read(plain), self._states(plain)
+            loses_an_act = names_acts(by_rules) and not names_acts(in_plain)
+            if not loses_an_act and not is_lost(self._meant(states), self._meant(states_of_plain)):
+                return in_plain if is_sure(in_plain) else read_with_tags(in_plain, self._tagged(states_of_plain)[0])
+        return by_rules if is_sure(by_rules) else read_with_tags(by_rules, tags)
 
     def _in_plain_words(self, found: Reading, states: _Encoded) -> Reading:
         """The reading in plain words where it is likely which gestures are meant."""

@@ -8,24 +8,22 @@ that comes nearest.
 
 from __future__ import annotations
 
-import re
 from dataclasses import replace
 from functools import cache
 
 from mmm_core.language.commands import EXACTLY, PlainCommand, Reading
 from mmm_core.language.known_phrases import significant_words
 from mmm_core.language.limbs import limbs_of
-from mmm_core.language.plain_gestures import plain_command
+from mmm_core.language.plain_gestures import IN_TURN, plain_command
 from mmm_core.language.word_tables import pairs
 
 _FEWEST_WORDS, _FEWEST_LETTERS = 2, 8
 """Number of significant words and of their letters: a phrase that has fewer of both would match other sentences by chance."""
-_IN_TURN = re.compile(r"\b(?:with alternating (?:hands|arms|fists)|in turns?|by turns|one after the other)\b")
 
 
 def said_of(text: str) -> str:
     """The significant words of a phrase, by which it is found, without those for arms in turn; empty where they are too few."""
-    words = significant_words(_IN_TURN.sub(" ", text))
+    words = significant_words(IN_TURN.sub(" ", text))
     return " ".join(words) if len(words) >= _FEWEST_WORDS or len("".join(words)) >= _FEWEST_LETTERS else ""
 
 

@@ -20,11 +20,12 @@ from mmm_core.language.word_tables import KNOWN_PHRASES_FILE
 FEWEST_LETTERS = 8
 """Least number of letters in a phrase: the classifier judges single short words."""
 _WORD = re.compile(r"[a-z']+|\d+")
-_SUBJECT = re.compile(
-    r"^\s*(?:(?:the|an?|this|some) (?:\w+ )?(?:person|man|woman|human|humanoid|robot|character|figure)|someone|somebody)"
-    r" (?=(?:is )?\w+(?:s|ing)\b)"
+CAPTION_SUBJECT = (
+    r"(?:(?:the|an?|this|some) (?:\w+ )?(?:person|man|woman|human|humanoid|robot|character|figure)|someone|somebody)\b"
 )
-"""The subject of a caption: "this person shifts from foot to foot"."""
+"""Pattern of the subject of a caption of one motion, such as the corpus has: "a man is shooting out their right hand"."""
+_SUBJECT = re.compile(rf"^\s*{CAPTION_SUBJECT} (?=(?:is )?\w+(?:s|ing)\b)")
+"""The subject before a verb: "this person shifts from foot to foot"."""
 _SAYS_NOTHING = frozenset(
     (
         "a an the your my his her its their both one of left right please robot now do does doing perform make give me us show "

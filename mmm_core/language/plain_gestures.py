@@ -29,7 +29,10 @@ _ADDS = re.compile(
     r"overhead|above|below|beneath|higher|lower than|(?:as|up) high|low down|down low)\b"
 )
 """Words for which a plain command has no place: heights, and numbers for each arm."""
-_IN_TURN = re.compile(r"\b(?:alternat\w*|in turns?|by turns|one after the other)\b")
+IN_TURN = re.compile(
+    r"\b(?:with alternating (?:hands|arms|fists)|alternat\w*|in turns?|by turns|one after the other)\b"
+)
+"""Words for arms that take turns."""
 
 
 SURE, SURE_OF_ALL = 0.75, 0.96
@@ -61,7 +64,7 @@ def plain_command(gesture: str, said: str) -> str:
     side = _SIDES.get(limbs, "")
     if not side and one_arm and not gesture.endswith(("left", "right")) and (named := _SIDE.search(said)):
         side = named[1]
-    if _IN_TURN.search(said):
+    if IN_TURN.search(said):
         command = in_turn
     elif side:
         command = one_arm.replace("{S}", side)
@@ -104,12 +107,12 @@ def is_gesture(name: str) -> bool:
 
 def is_sure_of(meant: Meant) -> bool:
     """Whether a gesture is likely enough for its plain command."""
-    return meant[1] >= SURE and meant[0] in _plain()
+    return meant[1] >= SURE and is_gesture(meant[0])
 
 
 def _plain_words(meant: Meant, said: str, least: float) -> str:
     gesture, probability = meant
-    return plain_command(gesture, said) if probability >= least and gesture in _plain() else ""
+    return plain_command(gesture, said) if probability >= least and is_gesture(gesture) else ""
 
 
 def _said(command: PlainCommand, words: str) -> PlainCommand:
@@ -118,7 +121,7 @@ def _said(command: PlainCommand, words: str) -> PlainCommand:
 
 @cache
 def _plain() -> dict[str, tuple[str, str, str, str]]:
-    """Of each gesture the command that names no arm, one arm, both arms, and the arms in turn; empty where it has none."""
+    """Maps each gesture to its four plain commands: for any arm, one arm, both arms, and arms in turn; missing ones are empty."""
     found: dict[str, tuple[str, str, str, str]] = {}
     for gesture, said in pairs("plain_gestures"):
         any_arm, one_arm, both_arms, in_turn, *_ = [*(part.strip() for part in said.split("|")), "", "", ""]

@@ -16,7 +16,7 @@ from mmm_core.language.commands import MOST_AT_ONCE, MOST_STEPS, PlainCommand, R
 from mmm_core.language.completed_at_once import beside_each_other
 from mmm_core.language.denial import denied_side, with_other_side
 from mmm_core.language.ellipsis import OTHER, completed
-from mmm_core.language.known_phrases import is_known_phrase, key_of
+from mmm_core.language.known_phrases import CAPTION_SUBJECT, is_known_phrase, key_of
 from mmm_core.language.limbs import is_gesture_verb, limbs_of
 from mmm_core.language.one_arm import of_one_arm
 from mmm_core.language.reading import command_of, read
@@ -47,10 +47,7 @@ _SIDE_AND_WAY = re.compile(
 _SIDED_LIMB = re.compile(
     r"(?P<your>\b(?:your|the) )?\b(?P<side>left|right) (?P<limb>hand|arm|fist|palm|elbow|wrist|shoulder|thumb)\b"
 )
-_IS_CAPTION = re.compile(
-    r"(?:(?:the|an?|this|some) (?:\w+ )?(?:person|man|woman|human|humanoid|robot|character|figure)|someone|somebody)\b"
-)
-"""The beginning of a caption of one motion, such as the corpus has: "a man is shooting out their right hand to intercept it"."""
+_IS_CAPTION = re.compile(CAPTION_SUBJECT)
 _BESIDE = re.compile(
     r"(?:,? (?:exactly|just|only))* (?:(?:\w+ times?|a single time)(?: in a row)?|once|twice)\b|"
     r"(?: with| using) (?:the|your|their|his|her|its|both) (?:left |right )?(?:arm|hand)s?\b"

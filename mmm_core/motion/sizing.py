@@ -42,7 +42,7 @@ _AROUND_CIRCLE_FRAMES = 8
 
 @dataclass(frozen=True)
 class _Act:
-    """What the arms of a motion do, which decides from where they are scaled.
+    """The act of a motion's arms; it decides about which path their rotations are scaled.
 
     Attributes:
         period: frames of a stroke that is repeated; 0 without one.
@@ -72,14 +72,15 @@ def sized(local: Array, rest: Array, motion: Motion, size: float, ramp: Array) -
         ramp: (T,) how much of the size each frame has, 0 to 1.
     """
     act = _act(motion)
-    reference = _reference(local, rest, act, 1.0 + (size - 1.0) * ramp)
+    weights = 1.0 + (size - 1.0) * ramp
+    reference = _reference(local, rest, act, weights)
     away = _rotation_vectors(np.swapaxes(reference, -1, -2) @ local[:, _SIZED])
     angle = np.linalg.norm(away, axis=-1)
     most = np.maximum(angle, _MOST_RAD) / np.maximum(angle, 1e-6)
     way = _way_m(local, act)
     out = local.copy()
     body, arms = slice(None, _N_BODY), slice(_N_BODY, None)
-    out[:, _TRUNK_HEAD] = _turned(reference, away, np.minimum((1.0 + (size - 1.0) * ramp)[:, None], most), body)
+    out[:, _TRUNK_HEAD] = _turned(reference, away, np.minimum(weights[:, None], most), body)
     arm_ramp = ramp if act.circle is None else ramp * _around(act.circle, len(local))
     found: list[tuple[float, Array]] = []
     factor = size
