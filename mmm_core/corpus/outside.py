@@ -14,6 +14,7 @@ from importlib.resources import files
 import numpy as np
 
 from mmm_core.corpus.forms import PERSONS, REQUESTS
+from mmm_core.corpus.withheld import is_withheld
 from mmm_core.language.inflection import plain, third_person
 
 Text = Callable[[np.random.Generator], str]
@@ -21,6 +22,15 @@ Text = Callable[[np.random.Generator], str]
 _TABLES = tomllib.loads(files("mmm_core.corpus").joinpath("prompts", "outside.toml").read_text(encoding="utf-8"))
 OUTSIDE: tuple[str, ...] = tuple(_TABLES["plain"])
 """Short, plain texts of every kind, with which a refused text is compared to name a reason."""
+WRITTEN_OUTSIDE: tuple[str, ...] = tuple(
+    line
+    for line in files("mmm_core.corpus")
+    .joinpath("prompts", "outside_texts.txt")
+    .read_text(encoding="utf-8")
+    .splitlines()
+    if not line.startswith("#") and not is_withheld(line)
+)
+"""Texts of a writer that request no gesture, though many have words of gestures; what the gesture classifier learns from."""
 _WORDS: tuple[str, ...] = tuple(_TABLES["words"].split())
 
 

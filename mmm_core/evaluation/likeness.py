@@ -22,6 +22,8 @@ Array = NDArray[np.floating]
 Checks = dict[str, bool]
 TURN_SHARE = 0.4
 """Share of the gesture's range by which a stroke rises and falls at least."""
+TURNS_SEEN = (1.0, 0.9, 0.8)
+"""Parts of that share that are tried in turn until the reference shows a stroke: a slow kiss falls by 0.97 of it."""
 PACE_RATIO = 1.42
 """Greatest ratio of longest to shortest time between strokes, each time divided by the reference's."""
 HALF_PACE_RATIO = 2.0
@@ -87,9 +89,10 @@ def _strokes(s: PostureFeatures, ref: Reference, core: slice) -> Checks:
     checks = {"count": True, "pace": True, "size": True}
     for name in ref.acting:
         signal, clean = ref.along(s, name)[wide], ref.along(ref.shown, name)[ref.core]
-        turn = TURN_SHARE * float(np.ptp(clean))
-        far = np.flatnonzero(np.abs(clean - clean[0]) > 0.5 * turn)
+        reach = TURN_SHARE * float(np.ptp(clean))
+        far = np.flatnonzero(np.abs(clean - clean[0]) > 0.5 * reach)
         out = 1.0 if not len(far) or clean[far[0]] > clean[0] else -1.0  # sense of the first stroke along the axis
+        turn = next((share * reach for share in TURNS_SEEN if _turning(out * clean, share * reach)), reach)
         made.append(_turning(out * signal, turn))
         meant.append(_turning(out * clean, turn))
         if len(made[-1]) == len(meant[-1]) > 1:

@@ -174,7 +174,10 @@ def _shows(c: Command, shown: PostureFeatures) -> bool:
 
 
 def _in_turn(steps: Sequence[Sequence[Command]], shown: PostureFeatures) -> bool:
-    """Whether the motion can be divided into the steps in order and, for two steps, at no frame at rest in reverse order."""
+    """Whether the motion can be divided into the steps in order and, for two steps, at no frame at rest in reverse order.
+
+    Two steps that differ by number, tempo or size alone ("clap slowly, later on fast") are not sought in reverse order.
+    """
     T = len(shown.head_yaw_deg)
     moments = range(MIN_PART, T - MIN_PART, _PART_STEP if len(steps) > 2 else 2)
     parts: dict[tuple[int, int], PostureFeatures] = {}
@@ -195,10 +198,15 @@ def _in_turn(steps: Sequence[Sequence[Command]], shown: PostureFeatures) -> bool
 
     forward = list(range(len(steps)))
     found = any(parted(forward, cuts) for cuts in combinations(moments, len(steps) - 1))
-    if len(steps) == 2 and found and steps[0] != steps[1]:
+    if len(steps) == 2 and found and _signs(steps[0]) != _signs(steps[1]):
         rests = _at_rest(shown)
         return not any(rests[t] and parted([1, 0], (t,)) for t in moments)
     return found
+
+
+def _signs(step: Sequence[Command]) -> list[Command]:
+    """The commands of a step without number, tempo, size and hold, by which they are not told apart."""
+    return [replace(c, count=None, tempo="", size="", hold_s=0.0) for c in step]
 
 
 def _at_rest(shown: PostureFeatures) -> np.ndarray:

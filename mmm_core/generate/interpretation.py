@@ -116,8 +116,8 @@ def _interpreted(engine: MotionModel, draft: _Draft, states: TextStates, rows: l
     reading = draft.reading
     if not rows:
         return Interpreted(reading, nothing_to_do(reading), ())
-    verdicts = [engine.verdict(words, states.sentence[row]) for words, row in zip(draft.words, rows, strict=True)]
-    whole, parts = verdicts[0], verdicts[1:]
+    whole = engine.verdict(draft.words[0], states.sentence[rows[0]], reading.outside)
+    parts = [engine.verdict(words, states.sentence[row]) for words, row in zip(draft.words[1:], rows[1:], strict=True)]
     if not draft.commands:
         if parts:
             whole = with_clauses(whole, list(draft.words[1:]), parts)

@@ -17,7 +17,7 @@ from mmm_core.motion.motion import FPS
 from mmm_core.motion.performing import Stretch, motion_of, performed
 from mmm_core.recognition.seen import Scene, lost, scenes_seen
 
-EXPONENTS = (1.0, 0.5, 0.3)
+EXPONENTS = (1.0, 0.5, 0.4, 0.3)
 """Exponents of a size that are tried in turn; when all fail, the size is left out."""
 
 

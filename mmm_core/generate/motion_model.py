@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from itertools import islice
 
 import numpy as np
@@ -54,11 +55,12 @@ class MotionModel:
         reading = self.reading_of(text)
         if not reading.steps:
             return self.read([text]), nothing_to_do(reading)
-        return self.understand_all([reading.words])[0]
+        return self.understand_all([reading.words], [reading.outside])[0]
 
-    def verdict(self, text: str, sentence: Tensor) -> ScopeVerdict:
-        """The scope verdict on a text and its unit sentence vector (D,)."""
-        return _without_scope(text) if self.model.scope is None else self.model.scope.judge(text, sentence)
+    def verdict(self, text: str, sentence: Tensor, outside: float = 0.0) -> ScopeVerdict:
+        """The scope verdict on a text with its unit sentence vector (D,) and the probability that it asks for no gesture."""
+        scope = self.model.scope
+        return _without_scope(text) if scope is None else scope.judge(text, sentence, outside)
 
     def reading_of(self, text: str) -> Reading:
         """The commands that are read in a text; an imported model is given every text as it is."""
@@ -68,16 +70,23 @@ class MotionModel:
             return Reading(said, ((PlainCommand(said),),), plain=True)
         return self.reader.read(text)
 
-    def understand_all(self, texts: list[str]) -> list[tuple[TextStates, ScopeVerdict]]:
+    def understand_all(
+        self, texts: list[str], outside: Sequence[float] | None = None
+    ) -> list[tuple[TextStates, ScopeVerdict]]:
         """States and scope verdicts of several texts, encoded in one batch.
 
         Texts are not rewritten. A text of which only a part can be done (`ScopeVerdict.kept`) has the states of that part.
+
+        Args:
+            texts: in plain words.
+            outside: for each text, the probability that it asks for no gesture; 0 when None.
         """
         states = self.read(texts)
         scope = self.model.scope
         if scope is None:
             return [(states.row(i), _without_scope(text)) for i, text in enumerate(texts)]
-        verdicts = [self.verdict(text, sentence) for text, sentence in zip(texts, states.sentence, strict=True)]
+        none = outside or [0.0] * len(texts)
+        verdicts = [self.verdict(*one) for one in zip(texts, states.sentence, none, strict=True)]
         clauses = [clauses_of(text) if scope.classifier is not None else [] for text in texts]
         read = [clause for several in clauses for clause in several]
         if read:

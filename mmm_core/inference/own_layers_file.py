@@ -48,7 +48,7 @@ def load_classifier(path: Path = CLASSIFIER_FILE) -> GestureClassifier:
         CheckpointError: the file is missing, no classifier, or was trained on another text encoder.
     """
     tensors, config = _load(path, _CLASSIFIER)
-    sizes = ClassifierConfig(**{**config, "classes": tuple(config["classes"])})
+    sizes = ClassifierConfig(**{**config, "classes": tuple(config["classes"]), "manners": tuple(config["manners"])})
     classifier = GestureClassifier(sizes, MiniLmConfig())
     fill_module(classifier, tensors, path)
     return classifier

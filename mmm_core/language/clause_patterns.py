@@ -29,7 +29,7 @@ DONE = (
     + _HAVE
     + _any(" been", "")
     + r"\s+"
-    + _any("done (?:both|that|this|so|it)", "done", "finished", "over", "down", "completed?")
+    + _any("done (?:both|that|this|so|it)", "done", "finished", "finish", "through", "over", "down", "completed?")
     + r"(?: with (?:that|this|it))?(?! \w+ing\b| with\b)"
 )
 """'Once that is done'."""

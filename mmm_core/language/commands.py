@@ -63,6 +63,7 @@ class Reading:
         denied: denied commands.
         notes: changes that the speaker may not expect.
         plain: whether the sentence is passed on unchanged.
+        outside: the probability that the sentence asks for no gesture of the corpus; 0 where nobody was asked.
     """
 
     text: str
@@ -70,6 +71,7 @@ class Reading:
     denied: tuple[str, ...] = ()
     notes: tuple[str, ...] = ()
     plain: bool = False
+    outside: float = 0.0
 
     @property
     def sentences(self) -> tuple[str, ...]:

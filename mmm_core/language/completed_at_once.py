@@ -15,7 +15,8 @@ from mmm_core.language.word_tables import REMEMBERED, any_of, lines
 _any = partial(any_of, "at_once")
 _FILLER = re.compile(_any("filler"))
 _FRONTED = re.compile(
-    rf"^(?:(?:and|with|using) )+(?:your |the )?(left|right|other)(?: hand| arm| one)?,? (?!{_any('place')}\b)(\w.+)$"
+    r"^(?:(?:and|with|using) )+(?:your |the )?(left|right|other)(?: hand| arm| one)?,? (?:you (?:are |will )?)?(?:be )?"
+    rf"(?!{_any('place')}\b)(\w.+)$"
 )
 _GERUND = re.compile(r"^\w+(?:ing|ed)\b")
 _IS = re.compile(

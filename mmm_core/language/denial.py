@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
+from functools import cache
 
 from mmm_core.language import denial_patterns as forms
 from mmm_core.language.alternatives import opposite
@@ -17,6 +18,7 @@ from mmm_core.language.ellipsis import OTHER
 from mmm_core.language.known_phrases import is_known_phrase
 from mmm_core.language.limbs import SOME_ARM, is_gesture_verb, limbs_of
 from mmm_core.language.requests import everyday
+from mmm_core.language.word_tables import lines
 
 
 @dataclass(frozen=True)
@@ -72,7 +74,12 @@ def without_denial(text: str) -> Denial:  # noqa: PLR0912  one branch for each f
                 continue
             if forms.WAVED_ASIDE.match(what) or forms.DIRECTION_ONLY.match(what):
                 continue
-            if _is_target(what, clause, rest) or _is_act(what) or forms.IN_PLACE_OF.match(clause):
+            if (
+                _is_target(what, clause, rest)
+                or _is_act(what)
+                or forms.IN_PLACE_OF.match(clause)
+                or forms.SURELY_DENIES.match(clause)
+            ):
                 anything |= forms.ANYTHING_BUT.search(clause) is not None
                 denied.append(re.sub(r"\s+(?:is|are) (?:fine|ok|okay|good).*$", "", what))
                 continue
@@ -97,7 +104,7 @@ def without_denial(text: str) -> Denial:  # noqa: PLR0912  one branch for each f
     rest = [
         clause
         for i, clause in enumerate(rest)
-        if not (denied and (_is_said_again(clause, rest[:i]) or _is_statement(clause)))
+        if not (denied and (_is_said_again(clause, rest[:i]) or _is_statement(clause) or _is_name(clause)))
     ]
     if not denied:
         return Denial(text if not rest or leaves else _as_it_was(text, rest))
@@ -163,6 +170,16 @@ def _is_said_again(clause: str, before: list[str]) -> bool:
 def _is_statement(clause: str) -> bool:
     """Whether a clause beside a denial is its reason: "don't clap yet, the teacher is still talking"."""
     return forms.STATES.search(clause) is not None and not _is_act(clause)
+
+
+def _is_name(clause: str) -> bool:
+    """Whether a clause beside a denial is a single word that the corpus does not know: "don't wave, Liam"."""
+    return " " not in clause and clause not in _corpus_words()
+
+
+@cache
+def _corpus_words() -> frozenset[str]:
+    return frozenset(word for line in lines("corpus_words") for word in line.split()[:1])
 
 
 def _leads_the_other_way(rest: list[str], what: str) -> bool:

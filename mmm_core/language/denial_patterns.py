@@ -78,7 +78,7 @@ GO_ON = re.compile(
     r"|^(\W*(?:skip|forget|leave out|never mind|ditch|scrap|bin|lose|nix|axe|forgo) (?:the|your|that) \w+),? and (?!(?:the|an?|your|no|any|not|all)\b)"
 )
 STOP_AND = re.compile(
-    r"^(\W*(?:please )?(?:stop|quit) \w+ing\b[^,]*?),? and (?!\w+ing\b|(?:left|right|up|down|back|forth|forwards?|out|round)\b|(?:your |the |both |left |right )*(?:hands?|arms?|head|fingers?|fists?|shoulders?)$)(?=\w+ \w)"
+    r"((?:^\W*|[,;.] )(?:please )?(?:stop|quit|enough (?:of|with)|no more|leave off|cut out|knock off)(?: (?:with|of))?(?: (?:that|the|your|all that|all the|all this|this))? \w+ing\b[^,]*?),? and (?!\w+ing\b|(?:left|right|up|down|back|forth|forwards?|out|round)\b|(?:your |the |both |left |right )*(?:hands?|arms?|head|fingers?|fists?|shoulders?)$)(?=\w+ \w)"
 )
 """'Stop waving and clap your hands' asks for the second; 'stop waving and clapping' for neither."""
 SAYS_NOT_TO = re.compile(
@@ -105,9 +105,15 @@ ANY_ARM_BUT = re.compile(
     r",? (?:with|using) (?:whichever|whatever|any|either) (?:hand|arm|one)(?: you (?:like|want|fancy|please|prefer))?,? "
     r"(?:(?:so|as|just as) long as it is not|but|except|other than) (?:the|your) (?P<side>left|right)(?: one| hand| arm)?"
 )
+SURELY_DENIES = re.compile(
+    r"^\W*(?:\w+,? )?(?:(?:nobody|no one|none of us)(?:'s)? (?:asked|asks|wants|needs|likes)|never ever|do not you dare|cancel|abort|call off|quit|"
+    r"no (?:\w+ ){1,2}(?:tonight|today|this time|now|anymore|any more)(?=$|[,.;]))"
+)
+"""Words after which even what is no known act is not to be done."""
 HAS_SIDE = re.compile(r"\b(?:left|right|both)\b")
 SAYS_NOTHING = re.compile(
     r"(?:the|use the|with the|use) (?:other|opposite)(?: one| hand| arm| way| side| direction)?|instead|(?:and |but )?that is it|"
-    r"(?:(?:lord|god|goodness|dear) )?(?:no|oh|hey|well|ok|please)(?:,? (?:no|please|sorry))*|(?:will|would|can|could) you|silly|got it|thanks?|for \w+(?:'s)? sake|not (?:another|one more|a single) \w+(?: \w+){0,4}"
+    r"(?:(?:lord|god|goodness|dear) )?(?:no|oh|hey|well|ok|please)(?:,? (?:no|please|sorry))*|(?:will|would|can|could) you|silly|got it|thanks?|for \w+(?:'s)? sake|not (?:another|one more|a single) \w+(?: \w+){0,4}|"
+    r"(?:you )?(?:just )?wait (?:until|till|for)\b.*|(?:no|nothing) (?:other|else|more)\b.*|leave it(?: at that| alone)?|(?:so )?not one(?: out)? (?:of|from) you"
 )
 """Clauses beside a denial that request nothing."""

@@ -67,7 +67,7 @@ def completed(clause: str, before: str) -> str | None:  # noqa: PLR0912  one bra
     if forms.ANOTHER.match(clause.strip(" ,.!")):
         return before
     clause = re.sub(
-        r"^(?:and |then |now |next |finally |again |but )+|(?: again| too| as well| instead)+$",
+        r"^(?:and |then |now |next |finally |again |but )+|(?: again| too| as well| also| instead)+$",
         "",
         clause.strip(" ,.!"),
     ).strip()
@@ -103,7 +103,7 @@ def completed(clause: str, before: str) -> str | None:  # noqa: PLR0912  one bra
         return forms.BOTH_ARMS.sub(lambda m: f"your {found['side']} {m['limb']}", before)
     if forms.OTHER_ONE.match(clause):
         return _other_way(before)
-    if found := forms.ONLY_SIDE.match(clause):
+    if found := forms.ONLY_SIDE.match(clause) or forms.SIDED_PLACE.match(clause):
         if sided := _to_side(before, found["side"]):
             return sided
     if found := forms.DIRECTION.match(clause):

@@ -24,13 +24,15 @@ ONLY_SIDE = re.compile(
     rf"^{_THE_SAME}(?:(?:just|only) )?(?:with|using|on|for|by|use|over)? ?(?:the |your )?(?P<side>left|right)(?: (?P<limb>{_LIMB}))?(?: (?:too|as well|again|instead|alone))?$"
 )
 OTHER_ONE = re.compile(
-    rf"^{_THE_SAME}(?:(?:with|using|on|to|in|for|by|use|your|at) )*(?:the |your )?(?:other|opposite)(?: (?:way|direction|{_LIMB}))?(?: (?:too|as well|round|around))?$|^vice versa$|^(?:switch|swap|change)(?: sides| hands| arms| over)?$"
+    rf"^{_THE_SAME}(?:(?:with|using|on|to|in|for|by|use|your|at) )*(?:the |your )?(?:other|opposite|second(?= one))(?: (?:way|direction|{_LIMB}))?(?: (?:too|as well|round|around))?$|^vice versa$|^(?:switch|swap|change)(?: sides| hands| arms| over)?$"
 )
 ADVERBS = {"big": "with big movements", "bigger": "with big movements", "small": "with small movements", "smaller": "with small movements",
             "large": "with big movements", "larger": "with big movements", "wide": "with big movements", "wider": "with big movements"}  # fmt: skip
 AGAIN = re.compile(
     r"^(?:(?:do )?(?:it|that|the same)(?: thing)? )?(?:again|once more|one more time)$|^repeat(?: it| that)?$|^(?:do )?the same(?: again)?$"
 )
+SIDED_PLACE = re.compile(r"^(?:the|a|an|my|that) \w+(?: \w+)? (?:on|to|at) (?:the|your) (?P<side>left|right)$")
+"""A thing beside the robot that the verb of the command before goes for: "turn to the bar on your right, then the door on your left"."""
 ANOTHER = re.compile(r"^(?:and |then |now )*(?:again|once more|another(?: one)?|one more(?: time)?|the same again)$")
 ONE_MORE = re.compile(r"^(?:and |then |now )*(?:once more|(?:one|another) more(?: time)?|another(?: one)?)$")
 """A clause that asks for one more stroke of a command that names a number: "nod three times, wait, and once more"."""

@@ -10,6 +10,8 @@ import re
 from collections.abc import Mapping
 from dataclasses import replace
 from functools import cache
+from types import MappingProxyType
+from typing import NamedTuple
 
 from mmm_core.language.commands import PlainCommand, Reading
 from mmm_core.language.count_words import count_asked
@@ -23,6 +25,10 @@ _SIDE = re.compile(
     r"(?<!all )(?<!just )\b(left|right)\b(?!-? ?(?:now|away|here|there|after|before|then|next|up|down|over|on|in|at|$|[,.;!?]))"
 )
 """A side that is named without a limb: "a left hook"."""
+_WITH_SIDE = re.compile(
+    r"\b(?:with|from|using|by|on) (?:your |the )?(left|right)\b(?! (?:side|ear|eye|knee|shoulder|hip|cheek|foot|leg)\b)"
+)
+"""A hand that is named without a noun: "two jabs with the left"."""
 _ADDS = re.compile(
     r"\b(?:each|half ?way|all the way|"
     r"(?:shoulder|waist|hip|chest|head|knee|eye)s?[- ](?:height|high|level)|"
@@ -37,8 +43,30 @@ IN_TURN = re.compile(
 
 SURE, SURE_OF_ALL = 0.75, 0.96
 """Least probability of a gesture for a command to be said in plain words, and for a sentence that was divided to be one command."""
-Meant = tuple[str, float]
-"""The likeliest gesture, or class of texts that are none, and its probability."""
+SURELY_DENIED = 0.9
+"""Least probability that a sentence asks for nothing, for none of its commands to be done."""
+_MAY_DENY = re.compile(
+    r"\b(?:no|not|nor|neither|never|none|nobody|nothing|nuh|without|but|bar|except|besides|other than|rather|else|only|was|were|"
+    r"had|rude|cancel\w*|withdr[ae]w\w*|dropp?ed|scrap\w*|banned|forbidden|prohibited|over|enough|stop\w*|skip\w*|quit\w*|forget|"
+    r"leave|refrain|avoid|hold|off|out|dinnae|dont|cant|wont|cut)\b|n't\b"
+)
+"""Words of which a sentence that asks for nothing has one."""
+
+
+class Meant(NamedTuple):
+    """What a text asks for.
+
+    Attributes:
+        name: the likeliest gesture, or class of texts that are none.
+        probability: the probability of that class.
+        manners: the probability of each tempo and size (`mmm_core.language.tagged_words.MANNERS`).
+        denied: the probability that the text asks for no motion at all.
+    """
+
+    name: str
+    probability: float
+    manners: Mapping[str, float] = MappingProxyType({})
+    denied: float = 0.0
 
 
 @cache
@@ -62,7 +90,12 @@ def plain_command(gesture: str, said: str) -> str:
     any_arm, one_arm, both_arms, in_turn = _plain()[gesture]
     limbs = limbs_of(said)
     side = _SIDES.get(limbs, "")
-    if not side and one_arm and not gesture.endswith(("left", "right")) and (named := _SIDE.search(said)):
+    if (
+        not side
+        and one_arm
+        and not gesture.endswith(("left", "right"))
+        and (named := _SIDE.search(said) or _WITH_SIDE.search(said))
+    ):
         side = named[1]
     if IN_TURN.search(said):
         command = in_turn
@@ -85,7 +118,8 @@ def in_plain_words(reading: Reading, whole: Meant, commands: Mapping[str, Meant]
         commands: what single commands mean, by their words; others stay as they are.
     """
     said = [command for step in reading.steps for command in step]
-    if len(said) > 1 and not reading.denied and (one := _plain_words(whole, reading.text, SURE_OF_ALL)):
+    doubtful = any(not is_sure_of(commands[command.text]) for command in said if command.text in commands)
+    if len(said) > 1 and doubtful and not reading.denied and (one := _plain_words(whole, reading.text, SURE_OF_ALL)):
         manner = next((command.manner for command in said if not command.manner.plain), said[0].manner)
         return replace(reading, steps=((PlainCommand(one, manner, limbs_of(one)),),), plain=False)
     found = {text: words for text, meant in commands.items() if (words := _plain_words(meant, text, SURE))}
@@ -95,9 +129,18 @@ def in_plain_words(reading: Reading, whole: Meant, commands: Mapping[str, Meant]
     return replace(reading, steps=steps, plain=False)
 
 
+def without_denied_acts(reading: Reading, whole: Meant) -> Reading:
+    """A reading of a sentence that asks for no motion in all likelihood, without commands: "everyone but you is to clap"."""
+    is_denial = whole.denied >= SURELY_DENIED and _MAY_DENY.search(reading.text.lower()) is not None
+    if not is_denial or not reading.steps or reading.denied:  # what is denied beside a command was found already
+        return reading
+    acts = tuple(command.text for step in reading.steps for command in step)
+    return replace(reading, steps=(), denied=acts, plain=False)
+
+
 def is_lost(meant: Meant, of_rest: Meant) -> bool:
     """Whether the words that were left out named the gesture: the sentence surely means it, the rest of it probably not."""
-    return is_sure_of(meant) and of_rest[0] != meant[0] and not is_sure_of(of_rest)
+    return is_sure_of(meant) and of_rest.name != meant.name and not is_sure_of(of_rest)
 
 
 def is_gesture(name: str) -> bool:
@@ -107,12 +150,11 @@ def is_gesture(name: str) -> bool:
 
 def is_sure_of(meant: Meant) -> bool:
     """Whether a gesture is likely enough for its plain command."""
-    return meant[1] >= SURE and is_gesture(meant[0])
+    return meant.probability >= SURE and is_gesture(meant.name)
 
 
 def _plain_words(meant: Meant, said: str, least: float) -> str:
-    gesture, probability = meant
-    return plain_command(gesture, said) if probability >= least and is_gesture(gesture) else ""
+    return plain_command(meant.name, said) if meant.probability >= least and is_gesture(meant.name) else ""
 
 
 def _said(command: PlainCommand, words: str) -> PlainCommand:

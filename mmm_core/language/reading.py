@@ -24,6 +24,7 @@ from mmm_core.language.manner import Manner, manner_of
 from mmm_core.language.one_arm import of_one_arm
 from mmm_core.language.one_gesture import as_said, held_together
 from mmm_core.language.one_thing import of_one_thing
+from mmm_core.language.positions import in_said_order
 from mmm_core.language.requests import everyday, greeting, restated, rewritten, without_request
 from mmm_core.language.run_on import with_marks
 from mmm_core.language.spelling import mended, normalised
@@ -69,7 +70,7 @@ def read(text: str, *, by_rules_alone: bool = False) -> Reading:
     if known := everyday(said) or greeting(said):
         return _known(text, known)
     held = said if by_rules_alone else held_together(said)
-    bare = without_request(held)
+    bare = in_said_order(without_request(held))
     if known := everyday(bare) or greeting(bare):
         return _known(text, known)
     bare, first_hand = _hand_first(restated(corrected(_referring(with_marks(bare), held))))

@@ -31,6 +31,8 @@ CLAUSE_KEPT_FROM = 0.995
 MARGIN_WEIGHT = 10.0
 LOGIT_AT_HALF = -2.5
 """Log-odds with margin that mean a score of one half. This and the thresholds: docs/scope.md."""
+OUTSIDE_WEIGHT = 6.0
+"""Log-odds that a text loses which the gesture classifier surely takes for no gesture."""
 FEATURE_SCALE = 20.0
 """Components of a unit vector of width 384 are about 1/20."""
 
@@ -105,18 +107,24 @@ class ScopeIndex:
     def __post_init__(self) -> None:
         object.__setattr__(self, "_meanings", Meanings(self.commands[: self.n_known]))
 
-    def judge(self, text: str, sentence: Tensor) -> ScopeVerdict:
-        """Verdict for a text as a whole and its unit sentence vector (D,)."""
+    def judge(self, text: str, sentence: Tensor, outside: float = 0.0) -> ScopeVerdict:
+        """Verdict for a text as a whole.
+
+        Args:
+            text: the text, in plain words.
+            sentence: its unit sentence vector (D,).
+            outside: probability that it asks for no gesture (`Reading.outside`).
+        """
         if why := unreadable(text):
             return ScopeVerdict("rejected", 0.0, "", why)
         cosine = self.vectors @ sentence
-        known, outside = cosine[: self.n_known], cosine[self.n_known :]
+        known, others = cosine[: self.n_known], cosine[self.n_known :]
         nearest = self._meanings.nearest(text, known)
-        other = float(outside.max()) if len(outside) else -1.0
-        impossible = self.commands[self.n_known + int(outside.argmax())] if len(outside) else ""
+        other = float(others.max()) if len(others) else -1.0
+        impossible = self.commands[self.n_known + int(others.argmax())] if len(others) else ""
         if self.classifier is None:
             return _by_cosine(nearest, float(known.max()), impossible, other)
-        score = self._score(sentence, float(known.max()) - other)
+        score = self._score(sentence, float(known.max()) - other, outside)
         if score < DEGRADE_BELOW and is_known_phrase(text):
             score = DEGRADE_BELOW
         if score < REJECT_BELOW:
@@ -133,9 +141,9 @@ class ScopeIndex:
         return ScopeVerdict("accepted", score, nearest, "")
 
     @torch.inference_mode()
-    def _score(self, sentence: Tensor, margin: float) -> float:
+    def _score(self, sentence: Tensor, margin: float, outside: float) -> float:
         assert self.classifier is not None
-        logit = float(self.classifier(sentence[None])) + MARGIN_WEIGHT * margin
+        logit = float(self.classifier(sentence[None])) + MARGIN_WEIGHT * margin - OUTSIDE_WEIGHT * outside
         return float(torch.sigmoid(torch.tensor(logit - LOGIT_AT_HALF)))
 
 

@@ -28,8 +28,9 @@ _BEFORE_VERBS = frozenset(
 )
 _STAYS = frozenset(
     (
-        "when where while than that what who whom whose which why how if for from but because until unless since though about into "
-        "she he we they it its is was were are has have does did will would should must may might much many more most very too yet "
+        "nor when where while than that what who whom whose which why how if for from but because until unless since though about "
+        "into she he we they it its is was were are be been being has have having does did will would should must may might much "
+        "many more most very too yet "
         "one two three four five six seven eight nine ten eleven twelve"
     ).split()
 )

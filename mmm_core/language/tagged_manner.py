@@ -7,9 +7,10 @@ lost without the words ("pump those arms like you're sprinting"), the one comman
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import groupby, pairwise
+from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,6 +24,8 @@ from mmm_core.language.tagged_words import FAST, LARGE, MANNERS, SLOW, SMALL, wo
 _ADVERBS = {SLOW: "slowly", FAST: "quickly", SMALL: "slightly", LARGE: "hugely"}
 _LEAST_PROBABILITY = 0.7
 """Mean probability, over the words of a phrase, below which a manner is not believed."""
+LIKELY_OF_WHOLE, LIKELY_OF_PART = 0.8, 0.9
+"""Least probability of a manner that no words were found for: of a sentence of one command, and of one command of several."""
 _ENDS_A_SENTENCE = re.compile(r"[.!?;:](?=\s|$)")
 _MARKS_AT_START = re.compile(r"^[\s,.;:!?\u2026\u2013\u2014-]+")
 _MARKS_AT_END = re.compile(r"[\s,.;:!?\u2026\u2013\u2014-]+$")
@@ -116,6 +119,31 @@ def with_left_manner(reading: Reading, text: str, phrases: Sequence[MannerPhrase
         command = _in_manner(command, manner)
     denied = tuple(what for what in reading.denied if not set(_words(mended(what))) <= said)
     return replace(reading, steps=((command,),), denied=denied)
+
+
+def with_likely_manner(
+    reading: Reading, whole: Mapping[str, float], commands: Mapping[str, Mapping[str, float]] = MappingProxyType({})
+) -> Reading:
+    """A reading whose commands have the tempo and the size that their words most likely ask for, where no word says another.
+
+    Args:
+        reading: the reading.
+        whole: the probability of each manner of the whole sentence, which its only command takes.
+        commands: the probabilities of single commands, by their words, for a reading of several.
+    """
+    said = [command for step in reading.steps for command in step]
+    if len(said) == 1:
+        commands = {said[0].text: whole}
+    least = LIKELY_OF_WHOLE if len(said) == 1 else LIKELY_OF_PART
+
+    def in_manner(command: PlainCommand) -> PlainCommand:
+        for manner, probability in commands.get(command.text, {}).items():
+            if probability >= least:
+                command = _in_manner(command, manner)
+        return command
+
+    steps = tuple(tuple(map(in_manner, step)) for step in reading.steps)
+    return reading if steps == reading.steps else replace(reading, steps=steps, plain=False)
 
 
 def _in_manner(command: PlainCommand, manner: str) -> PlainCommand:

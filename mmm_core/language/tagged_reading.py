@@ -7,7 +7,7 @@ many writers. Each command that the tags mark is completed with the words that i
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from itertools import chain, pairwise
 
@@ -55,12 +55,19 @@ _BESIDE = re.compile(
 """Number of strokes and hand of a command."""
 _LONGEST_SURE = 9
 """Words of a command that the rules are sure of, at most."""
-_MAY_BE_A_GESTURE = 0.5
-"""Probability of a gesture from which a statement is a command."""
-_STATES = re.compile(
-    r"(?:\w+ ){1,3}(?:is|are|am|was|were|will|would|should|can|could|has|have|had|does|did|may|might|must)\b"
+_HAND_BEFORE = re.compile(
+    r"(?:and )?(?:with )?(?:the |your )?(?:left|right)(?: (?:hand|arm))?,? (?:you(?: are|'re|'ll| will)? )?"
 )
-"""Subject and verb of a statement."""
+_MAY_DENY = re.compile(r"\b(?:not(?! that\W*$)|never|none|nor|neither|without|instead|rather|avoid|no need)\b|n't\b")
+"""Words of a denial; tags that mark no denial may have missed it."""
+_IS_LEFT_OVER = re.compile(r"(?:,? (?:with|and|while|as|then|but|so))+$")
+"""Words at the end of a command that belong to the one after it."""
+HowLikely = Callable[[Reading], float]
+_LIKELY = 0.75
+"""Probability from which words that name no act are taken for a command."""
+_DENIES_TWO = re.compile(r"\b(?:or|nor|and no)\b")
+_LONGEST_DENIED = 6
+"""Words of a denied act, at most, in which no command is sought."""
 _COMPARES = re.compile(r"\b(?:as if|as though|like)\b")
 _MOST_LEFT_OUT = 4
 """Words that a sentence has beyond those of its command, at most, without being looked at for words of manner."""
@@ -74,7 +81,9 @@ def is_sure(reading: Reading) -> bool:
     """
     commands = [command.text.lower() for step in reading.steps for command in step]
     if not commands:
-        return bool(reading.denied)
+        return bool(reading.denied) and all(
+            len(what.split()) <= _LONGEST_DENIED or _DENIES_TWO.search(what) for what in reading.denied
+        )
     if len(commands) == 1 and _IS_CAPTION.match(commands[0]):
         return True
     return all(is_known_phrase(_BESIDE.sub("", command)) or _is_simple(command) for command in commands)
@@ -114,44 +123,22 @@ def names_acts(reading: Reading) -> bool:
     return all(_stands_alone(command.text.lower()) for step in reading.steps for command in step)
 
 
-def without_asides(reading: Reading, meant: Mapping[str, float]) -> Reading:
-    """A reading without statements beside commands or a denial: "you are grand", "he will feel at home".
-
-    Such words are no phrase of the corpus, begin with no verb, name no limb, and probably mean no gesture. `notes` names them.
-
-    Args:
-        reading: the reading.
-        meant: of the commands that are no phrases of the corpus, the probability that they mean a gesture.
-    """
-    unlikely = [text for text, probability in meant.items() if probability < _MAY_BE_A_GESTURE]
-    asides = [text for text in unlikely if _is_statement(text.lower())]
-    kept = tuple(tuple(c for c in step if c.text not in asides) for step in reading.steps)
-    steps = tuple(step for step in kept if step)
-    if not asides or not (steps or reading.denied):
-        return reading
-    notes = tuple(f"'{text}' is no command" for text in asides)
-    return replace(reading, steps=steps, notes=(*reading.notes, *notes), plain=False)
-
-
-def _is_statement(words: str) -> bool:
-    return _STATES.match(words) is not None and not (_begins_with_a_verb(words) or limbs_of(words))
-
-
 def _is_simple(command: str) -> bool:
     words = command.split()
     if len(words) > _LONGEST_SURE or _JOINS.search(command.rstrip(" .")):
         return False
-    begins = _begins_with_a_verb(command) or LIMB_FIRST.match(command) is not None
+    begins = begins_with_a_verb(command) or LIMB_FIRST.match(command) is not None
     return begins or (_NOUN_FIRST.match(command) is not None and bool(limbs_of(command)))
 
 
-def read_with_tags(by_rules: Reading, tags: Sequence[str]) -> Reading:
+def read_with_tags(by_rules: Reading, tags: Sequence[str], how_likely: HowLikely = lambda _: 0.0) -> Reading:
     """The commands of a sentence that the rules are not sure of (`is_sure`).
 
     Args:
         by_rules: the sentence as the rules read it. It stands where the tags divide the sentence in the same way, mark no command,
-            or mark words that are none.
+            or mark words that are none, unless its commands are unlikely to be gestures and those of the tags likely.
         tags: a tag for each of the sentence's words (`mmm_core.language.tagged_words`).
+        how_likely: the least probability with which a command of a reading is a gesture; without it the rules are believed.
     """
     marked = marked_commands(by_rules.text, _without_splits(by_rules.text, tags))
     if not _can_be_read(marked):
@@ -159,21 +146,36 @@ def read_with_tags(by_rules: Reading, tags: Sequence[str]) -> Reading:
     by_tags = _read_marked(by_rules.text, marked)
     if by_rules.denied and not by_tags.denied:  # what is denied must not be done
         return by_rules
-    if not names_acts(by_tags):
+    divides_alike = _shape(by_rules) == _shape(by_tags) and not (by_rules.denied and is_sure(by_tags))
+    if names_acts(by_tags) and not divides_alike:
+        return by_tags
+    if _MAY_DENY.search(by_rules.text.lower()) or by_tags.denied or not _has_words_enough(by_tags):
         return by_rules
-    if _shape(by_rules) == _shape(by_tags) and not (by_rules.denied and is_sure(by_tags)):
-        return by_rules
-    return by_tags
+    is_better = how_likely(by_rules) < _LIKELY <= how_likely(by_tags)
+    return _with_manner_of(by_rules, by_tags) if is_better else by_rules
+
+
+def _has_words_enough(reading: Reading) -> bool:
+    return all(is_known_phrase(text) or " " in text for text in unknown_commands(reading))
+
+
+def _with_manner_of(by_rules: Reading, by_tags: Reading) -> Reading:
+    """The tags' reading, with the manner that the rules found where the only command has none."""
+    found = [command.manner for step in by_rules.steps for command in step if not command.manner.plain]
+    if len(found) != 1 or _shape(by_tags)[0] != [1] or not by_tags.steps[0][0].manner.plain:
+        return by_tags
+    return replace(by_tags, steps=((replace(by_tags.steps[0][0], manner=found[0]),),))
 
 
 def _stands_alone(command: str) -> bool:
     """Whether words are a command: they begin with a verb, or name a limb and more than the limb, and do not say to stop."""
     if means_stop(command) or any(pattern.search(command) for pattern in (_STOPS, _LIMB_ALONE, _IS_OPEN)):
         return False
-    return _begins_with_a_verb(command) or bool(limbs_of(command)) or is_known_phrase(command)
+    return begins_with_a_verb(command) or bool(limbs_of(command)) or is_known_phrase(command)
 
 
-def _begins_with_a_verb(words: str) -> bool:
+def begins_with_a_verb(words: str) -> bool:
+    """Whether words in lower case begin as a command does."""
     return BEGINS_WITH_A_VERB.match(words) is not None or is_gesture_verb(words.partition(" ")[0])
 
 
@@ -182,11 +184,21 @@ def _without_splits(text: str, tags: Sequence[str]) -> list[str]:
 
     Such a beginning is more often an error of the tagger ("shrug | your shoulders") than a list without marks ("nod shrug wave").
     """
-    found = list(tags)
-    for i, ((start, _end), (before, tag)) in enumerate(zip(words_of(text)[1:], pairwise(tags), strict=True), 1):
+    found, spans = _with_hands(text, tags), words_of(text)
+    for i, ((start, _end), (before, tag)) in enumerate(zip(spans[1:], pairwise(tags), strict=True), 1):
         follows = before == INSIDE or before in BEGINS
-        if follows and tag in (THEN, WITH, BEFORE) and not _begins_with_a_verb(text[start:].lower()):
+        if follows and tag in (THEN, WITH, BEFORE) and not begins_with_a_verb(text[start:].lower()):
             found[i] = INSIDE
+    return found
+
+
+def _with_hands(text: str, tags: Sequence[str]) -> list[str]:
+    """Tags in which a hand alone belongs to the command after it: "with the left | you hold a cup"."""
+    found, spans = list(tags), words_of(text)
+    begins = [i for i, tag in enumerate(tags) if tag in BEGINS]
+    for i, k in pairwise(begins):
+        if _HAND_BEFORE.fullmatch(text[spans[i][0] : spans[k][0]].lower()):
+            found[i + 1 : k + 1] = [INSIDE] * (k - i)
     return found
 
 
@@ -201,14 +213,14 @@ def _shape(reading: Reading) -> tuple[list[int], bool]:
 
 def _read_marked(text: str, marked: MarkedCommands) -> Reading:
     for_all = _AND.sub("", " ".join(_ALL.sub("", _plain(words)) for words in marked.for_all))
-    verb_of_all = _begins_with_a_verb(for_all)
+    verb_of_all = begins_with_a_verb(for_all)
     steps: list[list[str]] = []
     before = ""
     for step in marked.steps:
         commands: list[str] = []
         for words in step:
-            said = without_request(_plain(words))
-            if verb_of_all and not (_begins_with_a_verb(said) or LIMB_FIRST.match(said)):
+            said = _IS_LEFT_OVER.sub("", without_request(_plain(words)))
+            if verb_of_all and not (begins_with_a_verb(said) or LIMB_FIRST.match(said)):
                 said = f"{for_all} {said}"
             before = (_of_the_other_limb(said, before) or completed(said, before) or said) if before else said
             commands.append(before)

@@ -1,7 +1,7 @@
-"""Says which gesture of the corpus a command asks for, in whatever words.
+"""Says which gesture of the corpus a text asks for, in which tempo and size, and whether it asks for any motion, in whatever words.
 
-The lower layers are the text encoder's own; the classifier adds copies of its next layers, trained further, and one linear
-layer on the mean of their states. The motion model reads words by the text encoder as it is, which knows the sentences of the
+The lower layers are the text encoder's own; the classifier adds copies of its next layers, trained further, and three linear
+layers on the mean of their states. The motion model reads words by the text encoder as it is, which knows the sentences of the
 corpus well and other words for the same gestures less well.
 """
 
@@ -23,11 +23,13 @@ class ClassifierConfig:
 
     Attributes:
         classes: names of the classes: gestures, and texts that are none.
+        manners: tempos and sizes.
         n_shared: layers of the text encoder that the classifier uses as they are.
         n_own: layers of its own above them.
     """
 
     classes: tuple[str, ...]
+    manners: tuple[str, ...]
     n_shared: int = 3
     n_own: int = 3
 
@@ -40,9 +42,11 @@ class GestureClassifier(nn.Module):
         self.config = config
         self.layers = nn.ModuleList(WordLayer(text) for _ in range(config.n_own))
         self.gesture = nn.Linear(text.width, len(config.classes))
+        self.manner = nn.Linear(text.width, len(config.manners))
+        self.denial = nn.Linear(text.width, 1)
 
-    def forward(self, states: Tensor, mask: Tensor, dropout: float = 0.0) -> Tensor:
-        """Scores (B, classes) of texts.
+    def forward(self, states: Tensor, mask: Tensor, dropout: float = 0.0) -> tuple[Tensor, Tensor, Tensor]:
+        """Scores (B, classes) of the classes of texts, (B, manners) of each manner by itself, and (B,) that nothing may move.
 
         Args:
             states: (B, W, D) states of word pieces after the encoder's shared layers.
@@ -53,20 +57,28 @@ class GestureClassifier(nn.Module):
         for layer in self.layers:
             x = F.dropout(layer(x, mask[:, None, None, :]), dropout, self.training)
         weights = mask[..., None].to(x.dtype)
-        return self.gesture((x * weights).sum(1) / weights.sum(1))
+        mean = (x * weights).sum(1) / weights.sum(1)
+        return self.gesture(mean), self.manner(mean), self.denial(mean).squeeze(-1)
+
+
+MeantByText = tuple[str, float, dict[str, float], float]
+"""The likeliest class of a text, its probability, the probability of each manner, and that of nothing being asked for."""
 
 
 @torch.inference_mode()
-def likeliest(classifier: GestureClassifier, encoder: MiniLm, texts: Sequence[str]) -> list[tuple[str, float]]:
-    """The likeliest class of each text, with its probability."""
+def meant_by(classifier: GestureClassifier, encoder: MiniLm, texts: Sequence[str]) -> list[MeantByText]:
+    """What each text asks for."""
     ids, mask = encoder.piece_ids(list(texts))
-    return likeliest_of_states(classifier, encoder.lower_states(ids, mask, classifier.config.n_shared), mask)
+    return meant_by_states(classifier, encoder.lower_states(ids, mask, classifier.config.n_shared), mask)
 
 
 @torch.inference_mode()
-def likeliest_of_states(classifier: GestureClassifier, states: Tensor, mask: Tensor) -> list[tuple[str, float]]:
-    """The likeliest class of each of B texts, with its probability, from states (B, W, D) and mask (B, W) of `forward`."""
-    probability, index = F.softmax(classifier(states, mask).float(), -1).max(-1)
+def meant_by_states(classifier: GestureClassifier, states: Tensor, mask: Tensor) -> list[MeantByText]:
+    """What each of B texts asks for, from states (B, W, D) and mask (B, W) of `forward`."""
+    classes, manners, denials = classifier(states, mask)
+    probability, index = F.softmax(classes.float(), -1).max(-1)
+    of_manners, of_denial = torch.sigmoid(manners.float()).tolist(), torch.sigmoid(denials.float()).tolist()
     return [
-        (classifier.config.classes[int(i)], float(p)) for i, p in zip(index.tolist(), probability.tolist(), strict=True)
+        (classifier.config.classes[i], p, dict(zip(classifier.config.manners, some, strict=True)), denied)
+        for i, p, some, denied in zip(index.tolist(), probability.tolist(), of_manners, of_denial, strict=True)
     ]

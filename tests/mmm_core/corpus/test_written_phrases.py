@@ -20,12 +20,14 @@ def _letters(text: str) -> str:
 def test_each_gesture_has_phrases_and_no_phrase_has_two_gestures() -> None:
     found = load_written_phrases()
     assert set(found) == set(gestures())
-    assert min(map(len, found.values())) >= 25
+    assert min(map(len, found.values())) >= 110
     every = [_letters(phrase) for phrases in found.values() for phrase in phrases]
     assert len(every) - len(set(every)) < 0.01 * len(every)
 
 
-@pytest.mark.parametrize("name", ["dev", "test", "test_1", "test_2", "seen", "phrases_dev", "phrases_test"])
+@pytest.mark.parametrize(
+    "name", ["dev", "dev_2", "test", "test_1", "test_2", "test_3", "seen", "phrases_dev", "phrases_test"]
+)
 def test_no_phrase_is_a_sentence_of_a_set_that_measures(name: str) -> None:
     every = {_letters(phrase) for phrases in load_written_phrases().values() for phrase in phrases}
     assert not every & {_letters(sentence.text) for sentence in read_sentences(f"words_{name}")}
@@ -36,4 +38,4 @@ def test_a_line_without_gesture_or_phrase_is_named(tmp_path: Path, line: str) ->
     path = tmp_path / "phrases.txt"
     path.write_text(f"# comment\n\nknock => rap at the gate\n{line}\n", "utf-8")
     with pytest.raises(TrainingDataError, match="line 4"):
-        load_written_phrases(path)
+        load_written_phrases(tmp_path)

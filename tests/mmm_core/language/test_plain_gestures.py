@@ -12,9 +12,12 @@ from mmm_core.language.plain_gestures import (
     SEVERAL,
     SURE,
     SURE_OF_ALL,
+    SURELY_DENIED,
+    Meant,
     gestures,
     in_plain_words,
     plain_command,
+    without_denied_acts,
 )
 from mmm_core.language.reading import read
 
@@ -59,22 +62,34 @@ def _words(reading: Reading) -> list[list[str]]:
 def test_a_command_is_said_in_plain_words_where_its_gesture_is_likely() -> None:
     found = read("very slowly rap at the hatch, then bow")
     said = found.steps[0][0].text
-    plain = in_plain_words(found, (SEVERAL, 0.99), {said: ("knock", SURE)})
+    plain = in_plain_words(found, Meant(SEVERAL, 0.99), {said: Meant("knock", SURE)})
     assert _words(plain) == [["knock on the door"], [found.steps[1][0].text]]
     assert plain.steps[0][0].manner == found.steps[0][0].manner
     assert plain.steps[0][0].limbs == limbs_of("knock on the door")
     assert plain.text == found.text
 
 
-@pytest.mark.parametrize("meant", [("knock", SURE - 0.01), (OUTSIDE, 0.99), (SEVERAL, 0.99)])
-def test_what_is_unlikely_or_no_gesture_stays(meant: tuple[str, float]) -> None:
+@pytest.mark.parametrize("meant", [Meant("knock", SURE - 0.01), Meant(OUTSIDE, 0.99), Meant(SEVERAL, 0.99)])
+def test_what_is_unlikely_or_no_gesture_stays(meant: Meant) -> None:
     found = read("rap at the hatch, then bow")
-    assert in_plain_words(found, (SEVERAL, 0.99), {"rap at the hatch": meant}) == found
+    assert in_plain_words(found, Meant(SEVERAL, 0.99), {"rap at the hatch": meant}) == found
 
 
 def test_a_sentence_that_is_surely_one_gesture_is_one_command() -> None:
     several = read("nod, then bow")
-    assert _words(in_plain_words(several, ("bow", SURE_OF_ALL), {})) == [["bow politely"]]
-    assert in_plain_words(several, ("bow", SURE_OF_ALL - 0.01), {}) == several
+    doubtful = {"nod": Meant(OUTSIDE, 0.9)}
+    assert _words(in_plain_words(several, Meant("bow", SURE_OF_ALL), doubtful)) == [["bow politely"]]
+    assert in_plain_words(several, Meant("bow", SURE_OF_ALL - 0.01), doubtful) == several
+    assert in_plain_words(several, Meant("bow", SURE_OF_ALL), {}) == several
     denied = read("do not nod, bow")
-    assert in_plain_words(denied, ("nod", 0.99), {}) == denied
+    assert in_plain_words(denied, Meant("nod", 0.99), {}) == denied
+
+
+def test_a_sentence_that_asks_for_nothing_has_no_commands() -> None:
+    found = read("everyone but you is to clap, then bow")
+    assert without_denied_acts(found, Meant(SEVERAL, 0.9, denied=SURELY_DENIED - 0.01)) == found
+    nothing = without_denied_acts(found, Meant(SEVERAL, 0.9, denied=SURELY_DENIED))
+    assert not nothing.steps
+    told = read("clap, then bow")
+    assert without_denied_acts(told, Meant(SEVERAL, 0.9, denied=1.0)) == told, "no word of it denies"
+    assert nothing.denied == tuple(command.text for step in found.steps for command in step)

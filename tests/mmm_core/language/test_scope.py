@@ -112,6 +112,24 @@ def test_another_side_of_the_same_texts_is_seen(engine: Engine) -> None:
     assert found["auroc"] < 0.05 and found["false_refusals"] > 0.9 and found["false_acceptances"] > 0.9
 
 
+def test_what_the_gesture_classifier_takes_for_no_gesture_is_less_likely(engine: Engine) -> None:
+    scope, text = engine.model.scope, "fling the arms about like a windmill"
+    assert scope is not None
+    sentence = engine.read([text]).sentence[0]
+    scores = [scope.judge(text, sentence, outside).score for outside in (0.0, 0.5, 1.0)]
+    assert scores == sorted(scores, reverse=True) and scores[2] < scores[0]
+    known = "wave your right hand"
+    assert scope.judge(known, engine.read([known]).sentence[0], 1.0).status == "accepted", (
+        "a phrase of the corpus always is"
+    )
+
+
+@pytest.mark.parametrize("text", ["remind me to call mum", "play that track again", "who won the golf"])
+def test_other_tasks_with_words_of_gestures_are_not_accepted(engine: Engine, text: str) -> None:
+    assert engine.reader is not None and engine.reader.read(text).outside > 0.5
+    assert engine.understand(text)[1].status != "accepted"
+
+
 @pytest.mark.parametrize(
     ("text", "why"),
     [

@@ -11,7 +11,15 @@ from hypothesis import strategies as st
 
 from mmm_core.corpus.marked_sentences import read_manner
 from mmm_core.language.reading import read
-from mmm_core.language.tagged_manner import MannerPhrase, manner_phrases, with_left_manner, with_plain_manner
+from mmm_core.language.tagged_manner import (
+    LIKELY_OF_PART,
+    LIKELY_OF_WHOLE,
+    MannerPhrase,
+    manner_phrases,
+    with_left_manner,
+    with_likely_manner,
+    with_plain_manner,
+)
 from mmm_core.language.tagged_words import MANNERS, words_of
 
 
@@ -35,7 +43,7 @@ def _plain(marked: str) -> str:
         ("{fast: Quick as a wink}, point up at the ceiling!", "quickly point up at the ceiling!"),
         ("Stir the porridge for me. Och, {slow: easy now}, {slow: it's not a race}.", "Stir the porridge for me slowly."),
         ("give me {small: the merest suggestion of} a bow", "give me slightly a bow"),
-        ("clap {fast: on the double} and lean {large: like a falling tree}", "clap quickly and lean hugely"),
+        ("clap {fast: like a startled hare} and lean {large: like a falling tree}", "clap quickly and lean hugely"),
         ("Nod. {fast: Super fast}!", "Nod quickly."),
         ("Nod {slow: slowly}", "Nod slowly"),
         ("Nod {slow: very slowly}, then bow {slow: at the pace of a glacier}", "Nod very slowly, then bow slowly"),
@@ -104,3 +112,23 @@ def test_the_only_command_takes_a_manner_that_its_reading_lacks(marked: str, rea
 def test_a_denial_that_is_nothing_but_a_manner_denies_nothing() -> None:
     sentence, log_probability = _tagged("brush your teeth, {slow: and don't you dare rush it}")
     assert with_left_manner(read(sentence), sentence, manner_phrases(sentence, log_probability)).denied == ()
+
+
+def test_the_only_command_takes_the_likely_manner_of_the_sentence() -> None:
+    found = read("nod like a sleepy cow")
+    slow = with_likely_manner(found, {"slow": LIKELY_OF_WHOLE, "large": LIKELY_OF_WHOLE - 0.01})
+    assert [command.manner for step in slow.steps for command in step] == [read("nod slowly").steps[0][0].manner]
+    assert with_likely_manner(found, {"slow": LIKELY_OF_WHOLE - 0.01}) == found
+
+
+def test_a_manner_that_is_said_stays() -> None:
+    found = read("nod very fast")
+    assert with_likely_manner(found, {"slow": 0.99}) == found
+
+
+def test_of_several_commands_each_takes_its_own_manner() -> None:
+    found = read("nod, then bow")
+    slow = with_likely_manner(
+        found, {"fast": 0.99}, {"bow": {"slow": LIKELY_OF_PART}, "nod": {"fast": LIKELY_OF_PART - 0.01}}
+    )
+    assert [step[0].manner.tempo for step in slow.steps] == [1.0, read("bow slowly").steps[0][0].manner.tempo]

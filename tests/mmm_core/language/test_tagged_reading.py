@@ -7,9 +7,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from mmm_core.corpus.marked_sentences import read_marked
+from mmm_core.language.asides import without_asides
 from mmm_core.language.commands import PlainCommand, Reading
 from mmm_core.language.reading import read
-from mmm_core.language.tagged_reading import is_sure, read_with_tags, without_asides
+from mmm_core.language.tagged_reading import is_sure, read_with_tags
 from mmm_core.language.tagged_words import TAGS, words_of
 
 SENTENCES = (
@@ -36,7 +37,7 @@ def _read(marked: str) -> tuple[list[list[str]], tuple[str, ...]]:
         ("[1 lean to the right a little] and [2 to the left a lot]",
          [["lean to the right (0.6 times as large)"], ["lean to the left (1.4 times as large)"]]),
         ("[2 Blow a kiss], but [1 put your hand on your heart] beforehand, and end on [3 a little bow]",
-         [["put your hand on your heart"], ["a bow (0.6 times as large)"], ["blow a kiss"]]),
+         [["put your hand on your heart"], ["blow a kiss"], ["a bow (0.6 times as large)"]]),
         ("Start by [1 saluting], follow with [2 a quick nod], and finish with [3 your hands behind your back].",
          [["salute"], ["a nod (1.6 times as fast)"], ["put your hands behind your back"]]),
         ("[* all slowly and with your left hand]: [1 wave], [2 salute]",
@@ -58,6 +59,37 @@ def test_a_denial_of_the_rules_is_kept_where_the_tags_have_none() -> None:
     assert read_with_tags(read(sentence), tags).denied
 
 
+@pytest.mark.parametrize(
+    ("marked", "likely", "steps"),
+    [
+        ("[1a Punching left], [1b a heart above you], lads", ("punch left", "a heart above you"),
+         [["punch left", "a heart above you"]]),
+        ("[1 A shrug], I would say", ("a shrug",), [["a shrug"]]),
+        ("[1 A shrug], I would say", (), [["a shrug, I would say"]]),
+    ],
+)  # fmt: skip
+def test_words_that_name_no_act_are_commands_where_they_are_likely(
+    marked: str, likely: tuple[str, ...], steps: list[list[str]]
+) -> None:
+    sentence, tags = read_marked(marked)
+    said = [command.text for step in read(sentence).steps for command in step]
+
+    def how_likely(reading: Reading) -> float:
+        return min(float(command.text in likely) for step in reading.steps for command in step)
+
+    assert said != [text for step in steps for text in step] or not likely
+    found = read_with_tags(read(sentence), tags, how_likely)
+    assert [[command.text.lower() for command in step] for step in found.steps] == [
+        [text.lower() for text in step] for step in steps
+    ]
+
+
+def test_what_a_likely_reading_does_not_deny_is_not_done() -> None:
+    sentence, tags = read_marked("There is no need for [1 that thing with the fists]")
+    rules = read(sentence)
+    assert read_with_tags(rules, tags, lambda reading: float(reading != rules)) == rules
+
+
 def test_tags_without_a_command_leave_the_reading_of_the_rules() -> None:
     sentence = "wave and so on, if you like"
     by_rules = read(sentence)
@@ -75,7 +107,7 @@ def test_rules_are_sure_of_short_commands(sentence: str) -> None:
     "sentence",
     [
         "Stretch upward and when you're done let everything hang loose",
-        "put your hand on your heart, but before you do that, could you blow a kiss",
+        "put your hand on your heart, which I would like to see once you have blown a kiss",
     ],
 )
 def test_rules_are_not_sure_where_words_that_join_are_left(sentence: str) -> None:

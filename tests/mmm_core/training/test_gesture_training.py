@@ -16,10 +16,16 @@ from mmm_core.errors import CheckpointError
 from mmm_core.inference.checkpoint import load_text_encoder, save_tensors
 from mmm_core.inference.own_layers_file import load_classifier
 from mmm_core.language.plain_gestures import OUTSIDE, SEVERAL, gestures
-from mmm_core.model.gesture_classifier import likeliest
-from mmm_core.training.gesture_training import Draw, Texts, train_classifier
+from mmm_core.model.gesture_classifier import meant_by
+from mmm_core.training.gesture_texts import Drawn, Texts
+from mmm_core.training.gesture_training import Draw, train_classifier
 
-GIVEN = (("rap at the gate", "knock"), ("look skywards", "look/up"), ("do my taxes", OUTSIDE))
+GIVEN = (
+    Drawn("rap at the gate", "knock", frozenset({"fast"}), is_denied=False),
+    Drawn("look skywards", "look/up", frozenset()),
+    Drawn("do my taxes", OUTSIDE, None, is_denied=True),
+    Drawn("as slow as syrup", None, frozenset({"slow", "small"})),
+)
 CLASSES = ("knock", "look/up", OUTSIDE)
 
 
@@ -29,17 +35,21 @@ def _draw() -> Draw:
 
 
 def test_it_learns_the_texts_it_is_given_and_is_read_back(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("mmm_core.training.gesture_training.BATCH", 6)
+    monkeypatch.setattr("mmm_core.training.gesture_training.BATCH", 8)
     path = tmp_path / "classifier.safetensors"
-    trained = train_classifier(path, _draw(), classes=CLASSES, steps=24)
-    encoder, texts = load_text_encoder(), [text for text, _ in GIVEN]
+    trained = train_classifier(path, _draw(), classes=CLASSES, steps=48)
+    encoder, texts = load_text_encoder(), [one.text for one in GIVEN]
     for classifier in (trained, load_classifier(path)):
-        assert [name for name, _ in likeliest(classifier, encoder, texts)] == list(CLASSES)
+        meant = meant_by(classifier, encoder, texts)
+        assert [name for name, _, _, _ in meant[:3]] == list(CLASSES)
+        found = [{manner for manner, p in manners.items() if p > 0.5} for _, _, manners, _ in meant]
+        assert [found[i] for i in (0, 1, 3)] == [{"fast"}, set(), {"slow", "small"}]
+        assert meant[0][3] < 0.5 < meant[2][3]
     assert all(not p.requires_grad for p in trained.parameters())
 
 
 def test_equal_arguments_give_equal_weights(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("mmm_core.training.gesture_training.BATCH", 3)
+    monkeypatch.setattr("mmm_core.training.gesture_training.BATCH", 4)
     a, b = (train_classifier(tmp_path / name, _draw(), classes=CLASSES, steps=2) for name in ("a", "b"))
     assert all(torch.equal(x, y) for x, y in zip(a.state_dict().values(), b.state_dict().values(), strict=True))
 
@@ -47,10 +57,12 @@ def test_equal_arguments_give_equal_weights(tmp_path: Path, monkeypatch: pytest.
 def test_texts_of_every_class_are_drawn_and_none_keeps_a_slot() -> None:
     texts = Texts(random.Random(1))
     drawn = [texts.draw() for _ in range(6000)]
-    n_each = Counter(name for _, name in drawn)
-    assert set(n_each) == {*gestures(), OUTSIDE, SEVERAL}
+    n_each = Counter(one.name for one in drawn)
+    assert set(n_each) == {*gestures(), OUTSIDE, SEVERAL, None}
     assert n_each[OUTSIDE] > 600 and n_each[SEVERAL] > 600
-    assert not [text for text, _ in drawn if re.search(r"\{[SDNnv]\}", text) or not text.strip()]
+    assert {manner for one in drawn for manner in one.manners or ()} == {"slow", "fast", "small", "large"}
+    assert sum(bool(one.is_denied) for one in drawn) > 200
+    assert not [one.text for one in drawn if re.search(r"\{[SDNnv]\}", one.text) or not one.text.strip()]
 
 
 def test_a_classifier_of_another_text_encoder_is_refused(tmp_path: Path) -> None:

@@ -1,0 +1,202 @@
+"""Draws the texts that the gesture classifier learns from, each with what it asks for: a gesture, tempo and size, or nothing."""
+
+from __future__ import annotations
+
+import random
+import re
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from mmm_core.corpus.denials import MEANT, NOTHING, denial_patterns, draw_denial
+from mmm_core.corpus.forms import REQUESTS
+from mmm_core.corpus.marked_sentences import TaggedSentence, load_manner_sentences, load_marked_sentences
+from mmm_core.corpus.outside import OUTSIDE as OUTSIDE_TEXTS
+from mmm_core.corpus.outside import WRITTEN_OUTSIDE, outside_texts
+from mmm_core.corpus.plain_commands import plain_phrases
+from mmm_core.corpus.written_phrases import load_written_phrases
+from mmm_core.language.inflection import gerund
+from mmm_core.language.limbs import is_gesture_verb
+from mmm_core.language.plain_gestures import OUTSIDE, SEVERAL, gestures, plain_command
+from mmm_core.language.tagged_words import BEGINS, DENIED, NO_MANNER
+from mmm_core.language.tagged_words import OUTSIDE as NO_COMMAND
+from mmm_core.training.slips import slip
+
+SEED = 0
+"""Seed of the texts that are built from patterns."""
+_SHARE_OUTSIDE, _SHARE_MARKED, _SHARE_MANNER, _SHARE_DENIAL, _SHARE_JOINED = 0.12, 0.1, 0.13, 0.1, 0.06
+"""Shares of texts that are no gesture, of marked sentences of several commands, of manner, of denials, and of joined gestures."""
+_SHARE_WRITTEN = 0.5
+"""Share of texts in words of the writers; others are phrases of the corpus, or built from patterns where they are no gesture."""
+_SHARE_REQUESTED, _SHARE_ENDED, _SHARE_SLIPS, _SHARE_LOWER, _SHARE_PUNCTUATED = 0.12, 0.12, 0.1, 0.12, 0.24
+"""Shares of gestures in a request, with a courtesy at the end, with a slip, in lower case, and with capital and full stop."""
+_SHARE_SIDED, _SHARE_BEFORE, _SHARE_BEHIND = 0.12, 0.06, 0.16
+"""Shares of gestures with a hand named at their end, and of texts with other words before the gesture and behind it."""
+_SHARE_GERUND = 0.3
+"""Share of joined gestures of which the second is said as a gerund: "bow while clapping"."""
+_N_WORDS_BESIDE = range(2, 10)
+"""Numbers of words that may stand beside a gesture."""
+_N_OUTSIDE = 8000
+_JOINS_GERUND = (" while ", ", ", " and keep ", " with your hands ", " as you go on ")
+_JOINS = (" and ", ", then ", " and then ", ", ", " while you ", " after that ", ", and finally ", " but first ")
+_ENDS = (" please", " for me", " now", " for us")
+_MARKS = (".", "!", "?")
+_SIDE = re.compile(r"\b(?:left|right|both|hands|arms)\b")
+_BEFORE_MARK = re.compile(r" (?=[,.;:!?])")
+
+
+class Drawn(NamedTuple):
+    """A text with what it asks for; None where that is not known."""
+
+    text: str
+    name: str | None
+    manners: frozenset[str] | None = None
+    is_denied: bool | None = None
+
+
+class Texts:
+    """Draws texts of all classes, each gesture equally often."""
+
+    def __init__(self, rng: random.Random) -> None:
+        self._rng = rng
+        self._written = load_written_phrases()
+        self._corpus = {gesture: [p for _, p in plain_phrases(*_named(gesture))] for gesture in gestures()}
+        self._built = [*OUTSIDE_TEXTS, *outside_texts(_N_OUTSIDE, np.random.default_rng(SEED))]
+        marked = load_marked_sentences()
+        self._marked = [
+            (_joined(one.words), not _has_commands(one))
+            for one in marked
+            if sum(tag in BEGINS for tag in one.tags) > 1 or DENIED in one.tags
+        ]
+        self._denials = denial_patterns()
+        self._commands = {
+            g: [plain_command(g, ""), *filter(_is_imperative, (p.replace(" {n}", "") for p in self._corpus[g]))]
+            for g in gestures()
+        }
+        self._before = [words for one in marked if (words := _outside(one.words, one.tags))]
+        self._behind = [words for one in marked if (words := _outside(one.words[::-1], one.tags[::-1], -1))]
+        self._in_manner = load_manner_sentences()
+        self._manners = [phrase for one in self._in_manner for phrase in _phrases_of_manner(one)]
+
+    def draw(self) -> Drawn:
+        """A text with its class and its manners."""
+        rng, share = self._rng, self._rng.random()
+        if share < _SHARE_OUTSIDE:
+            return Drawn(rng.choice(WRITTEN_OUTSIDE if rng.random() < _SHARE_WRITTEN else self._built), OUTSIDE)
+        if share < _SHARE_OUTSIDE + _SHARE_MARKED:
+            return self._marked_sentence()
+        if share < _SHARE_OUTSIDE + _SHARE_MARKED + _SHARE_MANNER:
+            one = rng.choice(self._in_manner)
+            return Drawn(_joined(one.words), None, frozenset(one.manners) - {NO_MANNER})
+        if share < _SHARE_OUTSIDE + _SHARE_MARKED + _SHARE_MANNER + _SHARE_DENIAL:
+            return self._denial()
+        one = self._gesture()
+        if share > 1 - _SHARE_JOINED:
+            other = self._gesture()
+            if other.name != one.name:
+                return Drawn(_both(one.text, other.text, rng), SEVERAL, None, is_denied=False)
+        return one
+
+    def _marked_sentence(self) -> Drawn:
+        said, is_denied = self._rng.choice(self._marked)
+        return Drawn(said, SEVERAL, None, is_denied)
+
+    def _denial(self) -> Drawn:
+        """A sentence with a negative word; where it denies none of two gestures, its class is that of the one."""
+        rng = self._rng
+        gesture, other = rng.sample(gestures(), 2)
+        said, kind = draw_denial(
+            rng, self._denials, rng.choice(self._commands[gesture]), rng.choice(self._commands[other])
+        )
+        if rng.random() < _SHARE_LOWER:
+            said = said.lower()
+        return Drawn(said, gesture if kind == MEANT else SEVERAL, None, kind == NOTHING)
+
+    def _gesture(self) -> Drawn:
+        rng = self._rng
+        gesture = rng.choice(gestures())
+        written = self._written.get(gesture, ())
+        said = rng.choice(written if written and rng.random() < _SHARE_WRITTEN else self._corpus[gesture])
+        said = said.replace("{S}", rng.choice(("left", "right"))).replace("{D}", _named(gesture)[1])
+        said = said.replace("{N}", rng.choice(("two", "three", "four")))
+        said = " ".join(said.replace("{n}", rng.choice(("", "", "twice", "three times"))).split())
+        said, manners = self._beside(self._sided(said, gesture))
+        share = rng.random()
+        if share < _SHARE_REQUESTED:
+            said = rng.choice(REQUESTS).replace("{v}", said)
+        elif share < _SHARE_REQUESTED + _SHARE_ENDED:
+            said += rng.choice(_ENDS)
+        if rng.random() < _SHARE_SLIPS:
+            words = said.split()
+            i = rng.randrange(len(words))
+            words[i] = slip(words[i], rng)
+            said = " ".join(words)
+        share = rng.random()
+        if share < _SHARE_LOWER:
+            said = said.lower()
+        elif share < _SHARE_LOWER + _SHARE_PUNCTUATED:
+            said = said[0].upper() + said[1:] + rng.choice(_MARKS)
+        return Drawn(said, gesture, manners, is_denied=False)
+
+    def _sided(self, said: str, gesture: str) -> str:
+        """A phrase, or now and then the phrase with a hand behind it, if the gesture has one and the phrase names no side."""
+        if self._rng.random() >= _SHARE_SIDED or not plain_command(gesture, "your left hand") or _SIDE.search(said):
+            return said
+        return f"{said.rstrip('.!?')} with your {self._rng.choice(('left', 'right'))} hand"
+
+    def _beside(self, said: str) -> tuple[str, frozenset[str]]:
+        """A phrase, or now and then the phrase with a reason, an address or a manner beside it; and its manners."""
+        rng = self._rng
+        if rng.random() < _SHARE_BEFORE:
+            said = f"{rng.choice(self._before)} {said[0].lower()}{said[1:]}"
+        share = rng.random()
+        if share >= _SHARE_BEHIND:
+            return said, frozenset()
+        behind, manner = rng.choice(self._manners) if share < _SHARE_BEHIND / 2 else (rng.choice(self._behind), "")
+        said = f"{said.rstrip('.!?')}{'' if behind[0] in ',.;:!?' else ' '}{behind}"
+        return said, frozenset({manner} - {""})
+
+
+def _has_commands(one: TaggedSentence) -> bool:
+    return any(tag in BEGINS for tag in one.tags)
+
+
+def _is_imperative(phrase: str) -> bool:
+    """Whether a phrase of the corpus begins with a gesture's verb and has no slot."""
+    return "{" not in phrase and is_gesture_verb(phrase.partition(" ")[0])
+
+
+def _joined(words: Sequence[str]) -> str:
+    """A sentence of words and punctuation marks."""
+    return _BEFORE_MARK.sub("", " ".join(words))
+
+
+def _outside(words: Sequence[str], tags: Sequence[str], step: int = 1) -> str:
+    """The words outside commands that a sentence begins with; empty if these are few or many. With step -1 all is reversed."""
+    n = next((i for i, tag in enumerate(tags) if tag != NO_COMMAND), 0)
+    said = _joined(words[:n][::step])
+    return said if n in _N_WORDS_BESIDE and '"' not in said else ""
+
+
+def _phrases_of_manner(one: TaggedSentence) -> list[tuple[str, str]]:
+    """The words of each manner of a sentence, with the manner, unless these are few or many."""
+    phrases = {
+        manner: [word for word, of in zip(one.words, one.manners, strict=True) if of == manner]
+        for manner in sorted({*one.manners} - {NO_MANNER})
+    }
+    return [(_joined(words), manner) for manner, words in phrases.items() if len(words) in _N_WORDS_BESIDE]
+
+
+def _both(said: str, other: str, rng: random.Random) -> str:
+    """Two gestures joined to one text."""
+    first, second = said.rstrip("".join(_MARKS)), other[0].lower() + other[1:]
+    if rng.random() < _SHARE_GERUND and second.partition(" ")[0].isalpha():
+        return first + rng.choice(_JOINS_GERUND) + gerund(second, None)
+    return first + rng.choice(_JOINS) + second
+
+
+def _named(gesture: str) -> tuple[str, str]:
+    """Family and direction of a gesture."""
+    family, _, direction = gesture.partition("/")
+    return family, direction
