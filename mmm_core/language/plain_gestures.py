@@ -1,6 +1,6 @@
 """The plain command of a gesture, in words that the model knows well, with the arm and the number that a command names.
 
-`words/plain_gestures.txt` has a command for each gesture of the corpus. "bang on the hatch twice with your left" means "knock", so
+`words/plain_gestures.txt` has a command for each gesture of the corpus. "rap on the hatch twice with your left" means "knock", so
 its plain command is "knock on the door with your left hand two times".
 """
 

@@ -15,7 +15,9 @@ from mmm_core.language.limbs import is_gesture_verb
 from mmm_core.language.word_tables import phrases
 
 _PLACES = {"first": 0, "between": 1, "last": 2}
+"""The places that a clause may say, in order."""
 _UNSAID = 1
+"""Place of a clause that says none: between the first and the last."""
 _BY = r"(?:by|with|on|in|from|off with)(?: you| your)?"
 _PARTS = re.compile(r"\s*[;.!:]+\s+|\s*,\s+(?:(?:and|but)\s+)?|\s+(?:and|but|yet)\s+", re.IGNORECASE)
 _DENIES = re.compile(r"\b(?:not|never|nor|neither|without|instead|no)\b|n't\b", re.IGNORECASE)
@@ -31,9 +33,11 @@ _SIDE_ALONE = re.compile(
 )
 """Hands and ways of one command, which are no clauses of their own."""
 _NO_CLAUSE = re.compile(r"(?:to|with|on|from|in|at|then)\b")
+"""Beginnings of words that belong to the clause before them."""
 _PLURAL = re.compile(r"\w+s")
 _ARTICLES = re.compile(r"\b(?:the|an?|your) ")
 _MOST_CLAUSES = 4
+"""Clauses of a sentence that is put in order, at most."""
 
 
 def in_said_order(sentence: str) -> str:

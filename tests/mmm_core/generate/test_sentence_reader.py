@@ -82,7 +82,7 @@ def test_words_of_the_act_are_not_taken_for_its_manner(reader: SentenceReader, e
         ("Put it there, pal, right hand.", [["hold out your right hand for a handshake"]]),
         ("My son plays the fiddle back in Cape Breton, can you do that?", [["play the violin"]]),
         ("Break this board with a karate chop!", [["do a karate chop"]]),
-        ("Bang on the hatch twice with your left hand, then tell these noisy kids to be quiet",
+        ("Rap on the hatch twice with your left hand, then tell these noisy kids to be quiet",
          [["knock on the door with your left hand 2 times"], ["put your finger to your lips"]]),
         ("do a somersault", [["do a somersault"]]),
     ],

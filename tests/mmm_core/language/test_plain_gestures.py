@@ -37,8 +37,8 @@ def test_a_plain_command_is_read_as_itself() -> None:
 @pytest.mark.parametrize(
     ("gesture", "said", "command"),
     [
-        ("knock", "bang on the hatch", "knock on the door"),
-        ("knock", "bang on the hatch twice with your left hand", "knock on the door with your left hand 2 times"),
+        ("knock", "rap on the hatch", "knock on the door"),
+        ("knock", "rap on the hatch twice with your left hand", "knock on the door with your left hand 2 times"),
         ("knock", "three bangs on the hatch", "knock on the door 3 times"),
         ("march_arms", "go for a march with your arms just once", "march with your arms once"),
         ("push", "shove it off with both hands", "push forward with both hands"),
