@@ -179,7 +179,7 @@ def _is_name(clause: str) -> bool:
 
 @cache
 def _corpus_words() -> frozenset[str]:
-    return frozenset(word for line in lines("corpus_words") for word in line.split()[:1])
+    return frozenset(lines("corpus_words"))
 
 
 def _leads_the_other_way(rest: list[str], what: str) -> bool:

@@ -54,7 +54,7 @@ _MAY_DENY = re.compile(
 
 
 class Meant(NamedTuple):
-    """What a text asks for.
+    """The gesture that a text asks for, its manners, and whether the text denies all.
 
     Attributes:
         name: the likeliest gesture, or class of texts that are none.

@@ -67,14 +67,14 @@ MeantByText = tuple[str, float, dict[str, float], float]
 
 @torch.inference_mode()
 def meant_by(classifier: GestureClassifier, encoder: MiniLm, texts: Sequence[str]) -> list[MeantByText]:
-    """What each text asks for."""
+    """The class, the manners and the denial of each text."""
     ids, mask = encoder.piece_ids(list(texts))
     return meant_by_states(classifier, encoder.lower_states(ids, mask, classifier.config.n_shared), mask)
 
 
 @torch.inference_mode()
 def meant_by_states(classifier: GestureClassifier, states: Tensor, mask: Tensor) -> list[MeantByText]:
-    """What each of B texts asks for, from states (B, W, D) and mask (B, W) of `forward`."""
+    """The class, the manners and the denial of each of B texts, from states (B, W, D) and mask (B, W) of `forward`."""
     classes, manners, denials = classifier(states, mask)
     probability, index = F.softmax(classes.float(), -1).max(-1)
     of_manners, of_denial = torch.sigmoid(manners.float()).tolist(), torch.sigmoid(denials.float()).tolist()

@@ -34,7 +34,7 @@ _SHARE_REQUESTED, _SHARE_ENDED, _SHARE_SLIPS, _SHARE_LOWER, _SHARE_PUNCTUATED = 
 _SHARE_SIDED, _SHARE_BEFORE, _SHARE_BEHIND = 0.12, 0.06, 0.16
 """Shares of gestures with a hand named at their end, and of texts with other words before the gesture and behind it."""
 _SHARE_GERUND = 0.3
-"""Share of joined gestures of which the second is said as a gerund: "bow while clapping"."""
+"""Share of joined texts that name their second gesture by a gerund: "bow while clapping"."""
 _N_WORDS_BESIDE = range(2, 10)
 """Numbers of words that may stand beside a gesture."""
 _N_OUTSIDE = 8000
