@@ -10,6 +10,7 @@ from mmm_core.corpus.heldout import PROBES, Probe
 from mmm_core.motion.motion import Motion
 from mmm_core.motion.posture_features import PostureFeatures, part, posture_features
 from mmm_core.recognition import checks
+from mmm_core.recognition.expected import acts_with, goes, moves
 from mmm_core.recognition.signs import shows
 
 SLOW_CYCLE_S, FAST_CYCLE_S = 0.72, 0.64
@@ -23,17 +24,17 @@ def judge(probe: Probe, shown: PostureFeatures, with_pose: bool = False) -> dict
     """Whether a motion meets each expectation of a probe; `with_pose` adds the sign of the probe's family."""
     if probe.then is not None:
         return {"order": _in_order(probe, probe.then, shown)}
-    verdict = {"limb": checks.limb(shown) == probe.limb}
+    verdict = {"limb": moves(shown, probe.family, probe.limb)}
     if with_pose:
         verdict["pose"] = shows(shown, probe.family, probe.side, probe.direction)
     if probe.side:
-        verdict["side"] = shown.arms == ("both" if probe.side == "alternating" else probe.side)
+        verdict["side"] = acts_with(shown, probe.family, probe.side)
     if probe.count is not None:
         found = checks.count(shown, probe.family, probe.side)
         verdict["count"] = found is not None and abs(found - probe.count) <= 1
         verdict["count_exact"] = found == probe.count
     if probe.direction:
-        verdict["direction"] = checks.direction(shown, probe.family) == probe.direction
+        verdict["direction"] = goes(shown, probe.family, probe.side, probe.direction)
     if probe.hold_s:
         held = checks.held_s(shown, probe.limb)
         verdict["hold"] = abs(held - probe.hold_s) <= max(1.0, 0.25 * probe.hold_s)
@@ -56,8 +57,8 @@ def _in_order(first: Probe, second: Probe, shown: PostureFeatures) -> bool:
 
 
 def _is_seen(probe: Probe, shown: PostureFeatures) -> bool:
-    ok = checks.limb(shown) == probe.limb and (not probe.side or shown.arms == probe.side)
-    return ok and (not probe.direction or checks.direction(shown, probe.family) == probe.direction)
+    ok = moves(shown, probe.family, probe.limb) and (not probe.side or acts_with(shown, probe.family, probe.side))
+    return ok and (not probe.direction or goes(shown, probe.family, probe.side, probe.direction))
 
 
 def evaluate(

@@ -51,7 +51,8 @@ def performed(probe: Probe, seed: int) -> Features:
     def gesture(p: Probe) -> Gesture:
         family = FAMILIES[p.family]
         side = p.side or ("right" if "right" in family.sides else "".join(family.sides[:1]))
-        count = p.count or (3 if p.tempo else family.counts[0] if family.counts else 1)
+        in_turns = p.side in ("both", "alternating") and "alternating" in family.sides and bool(family.counts)
+        count = p.count or (3 if p.tempo else 2 if in_turns else family.counts[0] if family.counts else 1)
         where = p.direction or ("" if "" in family.directions else (family.directions or ("",))[0])
         tempo = {"slow": 0.65, "fast": 1.4}.get(p.tempo, 1.0)
         return Gesture(p.family, side, count, where, tempo=tempo, hold_s=p.hold_s)

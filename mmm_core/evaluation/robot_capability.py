@@ -7,7 +7,7 @@ beyond the retargeting. The remaining expectations measure the model and not the
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 
 import numpy as np
 
@@ -16,7 +16,7 @@ from mmm_core.evaluation.probes import judge
 from mmm_core.evaluation.reconstruction import Features, performed
 from mmm_core.motion.features import recover
 from mmm_core.motion.motion import FPS, Motion
-from mmm_core.motion.posture_features import posture_features
+from mmm_core.motion.posture_features import PostureFeatures, posture_features
 
 PERFORMANCES = 3
 """Performances of each probe; the robot can show an expectation when most of them meet it."""
@@ -36,13 +36,23 @@ def showable(
     found: dict[str, frozenset[str]] = {}
     for probe in probes:
         seen: Counter[str] = Counter()
-        for seed in range(PERFORMANCES):
-            motion = on_robot(as_motion(performed(probe, seed), probe.text))
-            shown = posture_features(motion.joints_m, motion.head_quat_wxyz, motion.forearm_twist_rad)
+        for shown in performances(probe, on_robot):
             seen.update(key for key, ok in judge(probe, shown, with_pose=True).items() if ok)
-        found[probe.text] = frozenset(key for key, n in seen.items() if 2 * n > PERFORMANCES)
+        found[probe.text] = frozenset(key for key, n in seen.items() if is_most(n))
         progress(len(found))
     return found
+
+
+def performances(probe: Probe, on_robot: OnRobot) -> Iterator[PostureFeatures]:
+    """The corpus's own performances of a probe, as a robot shows them."""
+    for seed in range(PERFORMANCES):
+        motion = on_robot(as_motion(performed(probe, seed), probe.text))
+        yield posture_features(motion.joints_m, motion.head_quat_wxyz, motion.forearm_twist_rad)
+
+
+def is_most(n_performances: int) -> bool:
+    """Whether a number of performances is the greater part of all."""
+    return 2 * n_performances > PERFORMANCES
 
 
 def as_motion(features: Features, text: str = "") -> Motion:

@@ -1,18 +1,19 @@
 """Finds the expectations of sentences that a body can meet: that of a robot, or a person's as far as the checks see them.
 
 Each command of a sentence is performed by the corpus alone (`robot_capability`). What is expected of a whole sentence (order,
-at once, denial) can be met if each of its commands can be seen.
+at once, denial) can be met if each of its commands can be seen, and if no command shows the sign of what is denied: someone who
+beckons also waves away, as far as the signs go.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 
-from mmm_core.corpus.heldout import Command, Sentence
-from mmm_core.evaluation.robot_capability import showable
+from mmm_core.corpus.heldout import Command, Probe, Sentence
+from mmm_core.evaluation.robot_capability import OnRobot, is_most, performances, showable
 from mmm_core.evaluation.sentences import as_probe
-from mmm_core.motion.motion import Motion
+from mmm_core.recognition.signs import shows
 
 _LONGEST_HOLD_S = 5.0
 """A clip of the corpus has no room for a longer hold; who can hold a pose for five seconds can hold it for longer."""
@@ -20,7 +21,7 @@ _OF_WHOLE = frozenset({"order", "at_once", "denial"})
 
 
 def showable_expectations(
-    sentences: Sequence[Sentence], on_robot: Callable[[Motion], Motion] = lambda motion: motion
+    sentences: Sequence[Sentence], on_robot: OnRobot = lambda motion: motion
 ) -> dict[str, frozenset[str]]:
     """The expectations of each sentence that can be met, by its text.
 
@@ -32,15 +33,27 @@ def showable_expectations(
     names = {c: str(i) for i, c in enumerate(commands)}
     met = showable(
         on_robot,
-        probes=[replace(as_probe(c), text=names[c], hold_s=min(c.hold_s, _LONGEST_HOLD_S)) for c in commands],
+        probes=[_named(c, names[c]) for c in commands],
     )
     found: dict[str, frozenset[str]] = {}
     for s in sentences:
         asked = [c for step in s.commands for c in step]
         whole = _OF_WHOLE if all(_expected(c) <= met[names[c]] for c in asked) else frozenset()
+        if any(_shows_too(c, family, on_robot) for c in asked for family in s.denied):
+            whole -= {"denial"}
         single = met[names[asked[0]]] | {"tempo", "size"} if len(asked) == 1 else frozenset()
         found[s.text] = whole | single
     return found
+
+
+def _shows_too(command: Command, family: str, on_robot: OnRobot) -> bool:
+    """Whether a command's own performances show the sign of another family, too."""
+    return is_most(sum(shows(shown, family) for shown in performances(_named(command), on_robot)))
+
+
+def _named(command: Command, text: str = "") -> Probe:
+    """A command as a probe whose hold fits into a clip of the corpus."""
+    return replace(as_probe(command), text=text, hold_s=min(command.hold_s, _LONGEST_HOLD_S))
 
 
 def _expected(command: Command) -> frozenset[str]:

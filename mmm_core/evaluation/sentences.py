@@ -17,11 +17,13 @@ from mmm_core.motion.motion import Motion
 from mmm_core.motion.posture_features import PostureFeatures, part, posture_features
 from mmm_core.motion.skeleton import standing_joints
 from mmm_core.recognition import checks
+from mmm_core.recognition.expected import acts_with, goes, moves
 from mmm_core.recognition.signs import shows
 
 Generate = Callable[[str, int], Motion]
 _REST = 0.35
 """Share of the greatest distance from the first frame below which the body is at rest."""
+_ARMS_OF = {"alternating": "both"}
 _PART_STEP = 4
 """Frames between two moments at which a motion is divided."""
 
@@ -167,10 +169,8 @@ def _still(shown: PostureFeatures, limbs: Collection[str]) -> PostureFeatures:
 def _shows(c: Command, shown: PostureFeatures) -> bool:
     if not shows(shown, c.family, c.side, c.direction):
         return False
-    if not c.direction or c.family not in ("look", "tilt_head", "lean", "twist", "point"):
-        return True
     arms = c.side if c.family == "point" and c.side else shown.arms
-    return checks.direction(replace(shown, arms=arms), c.family) == c.direction
+    return not c.direction or goes(replace(shown, arms=arms), c.family, c.side, c.direction)
 
 
 def _in_turn(steps: Sequence[Sequence[Command]], shown: PostureFeatures) -> bool:
@@ -225,22 +225,22 @@ def _at_rest(shown: PostureFeatures) -> np.ndarray:
 
 
 def _step_seen(steps: Sequence[Sequence[Command]], i: int, shown: PostureFeatures) -> bool:
-    """Whether a part of a motion shows a step: its limb, side and direction, and its sign if a neighbour shares these."""
+    """Whether a part of a motion shows a step: its limb, side and direction, and its sign if a neighbour may share these."""
     step = steps[i]
     if len(step) > 1:
         return seen_at_once(step, shown)
     c = step[0]
-    neighbours = [s[0] for k, s in enumerate(steps) if abs(k - i) == 1]
-    alike = any(
-        (n.limb, n.side) == (c.limb, c.side)
-        and (n.direction == c.direction or not (n.direction and c.direction))
-        and n != c
-        for n in neighbours
-    )
-    if checks.limb(shown) != c.limb:
+    if not moves(shown, c.family, c.limb):
         return False
-    if c.side and shown.arms != c.side:
+    if c.side and not acts_with(shown, c.family, c.side):
         return False
-    if c.direction and checks.direction(shown, c.family) != c.direction:
+    if c.direction and not goes(shown, c.family, c.side, c.direction):
         return False
+    alike = any(_may_look_alike(steps[k][0], c) for k in (i - 1, i + 1) if 0 <= k < len(steps))
     return not alike or shows(shown, c.family, c.side, c.direction)
+
+
+def _may_look_alike(one: Command, other: Command) -> bool:
+    """Whether two commands cannot be told apart by limb, side and direction; a side or direction that is left open may be any."""
+    sides, ways = ({_ARMS_OF.get(c.side, c.side) for c in (one, other)}, {one.direction, other.direction})
+    return one != other and one.limb == other.limb and all(len(said) == 1 or "" in said for said in (sides, ways))

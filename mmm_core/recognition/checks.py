@@ -118,6 +118,11 @@ def direction(s: PostureFeatures, family: str) -> str:
         return _largest({"left": roll.max(), "right": -roll.min(), "forward": pitch.max(), "back": -pitch.min()}, 5)
     if family == "twist":
         return _largest({"left": s.trunk_yaw_deg.max(), "right": -s.trunk_yaw_deg.min()}, 9)
+    if family == "look_back":
+        yaw = s.head_yaw_deg + s.trunk_yaw_deg
+        return _largest({"left": yaw.max(), "right": -yaw.min()}, 40)
+    if family == "stretch":
+        return _largest({"left": s.trunk_roll_deg.max(), "right": -s.trunk_roll_deg.min()}, 6) or "up"
     if family == "point":
         side = s.arms if s.arms in ("left", "right") else "right"
         held = _held(s, side)

@@ -18,6 +18,7 @@ SENTENCES = (
     Sentence("wave and nod", "at_once", ((WAVE, NOD),)),
     Sentence("do not clap, wave", "denial", ((WAVE,),), denied=("clap",)),
     Sentence("do not clap", "denial", (), denied=("clap",), nothing=True),
+    Sentence("do not wave me off, beckon", "denial", ((Command("beckon", "arm"),),), denied=("go_away",)),
 )
 
 
@@ -49,3 +50,8 @@ def test_a_sentence_with_one_command_that_cannot_be_seen_expects_no_order() -> N
     assert "pose" not in found["bow"] and "denial" not in found["bow"]
     assert "order" in found["wave, then nod"] and "order" not in found["wave, then bow"]
     assert {"side", "denial"} <= found["do not clap, wave"]
+
+
+def test_a_gesture_with_the_sign_of_what_is_denied_expects_no_denial(of_a_person: dict[str, frozenset[str]]) -> None:
+    assert "denial" in of_a_person["do not clap, wave"]
+    assert "denial" not in of_a_person["do not wave me off, beckon"]

@@ -1,0 +1,39 @@
+"""Whether a motion meets what is expected of a gesture's limb, arm and direction, each judged as the gesture's family shows it.
+
+The corpus's own performance of every gesture meets all of them (`tests/mmm_core/recognition/test_expected.py`).
+"""
+
+from __future__ import annotations
+
+from mmm_core.motion.posture_features import PostureFeatures
+from mmm_core.recognition import checks
+from mmm_core.recognition.sign_tables import DIRECTED
+from mmm_core.recognition.signs import shows
+
+_TRUNK_TURNS_ALONG = "look_back"
+"""Family of the head in which the trunk turns, too."""
+_OTHER_ARM_HELPS = ("dab", "disco", "superhero")
+"""Families that name one arm and move both."""
+_BY_SIGN = frozenset(family for family, _ in DIRECTED) - {"point"}
+"""Families in which each direction has a sign of its own."""
+_OTHER = {"left": "right", "right": "left"}
+
+
+def moves(s: PostureFeatures, family: str, limb: str) -> bool:
+    """Whether the limb that moves most clearly is that of the gesture."""
+    found = checks.limb(s)
+    return found == limb or (family == _TRUNK_TURNS_ALONG and found == "trunk")
+
+
+def acts_with(s: PostureFeatures, family: str, side: str) -> bool:
+    """Whether the arms that act are the gesture's: "left", "right", "both" or "alternating"."""
+    if family in _OTHER_ARM_HELPS and side in _OTHER:
+        return s.arms == "both" and shows(s, family, side) and not shows(s, family, _OTHER[side])
+    return s.arms == ("both" if side == "alternating" else side)
+
+
+def goes(s: PostureFeatures, family: str, side: str, direction: str) -> bool:
+    """Whether the gesture goes in its direction."""
+    if family in _BY_SIGN:
+        return shows(s, family, side, direction)
+    return checks.direction(s, family) == direction
