@@ -7,6 +7,7 @@ sentence asks for any motion at all.
 from __future__ import annotations
 
 import random
+import re
 from collections.abc import Sequence
 from importlib.resources import files
 from typing import NamedTuple
@@ -18,19 +19,32 @@ NOTHING, OTHER, MEANT = KINDS = ("nothing", "other", "meant")
 """Kinds of patterns: nothing may move; another gesture is to be done; the gesture is to be done nevertheless."""
 
 
+_SLOT = re.compile(r"\{([vgwh])\}")
+
+
+class Slot(NamedTuple):
+    """A gesture in a sentence: its first character, its end, and whether it is the other gesture."""
+
+    start: int
+    end: int
+    is_other: bool
+
+
 class Pattern(NamedTuple):
     """A sentence with slots: {v} and {g} for a gesture as an imperative and as a gerund, {w} and {h} for another one."""
 
     kind: str
     words: str
 
-    def filled(self, gesture: str, other: str) -> str:
-        """The sentence with two gestures, each an imperative such as "wave your hand"."""
-        slots = {"{v}": gesture, "{g}": gerund(gesture, None), "{w}": other, "{h}": gerund(other, None)}
-        said = self.words
-        for slot, words in slots.items():
-            said = said.replace(slot, words)
-        return said
+    def filled(self, gesture: str, other: str) -> tuple[str, list[Slot]]:
+        """The sentence with two gestures, each an imperative such as "wave your hand", and where these stand in it."""
+        words = {"v": gesture, "g": gerund(gesture, None), "w": other, "h": gerund(other, None)}
+        said, slots = "", []
+        for i, piece in enumerate(_SLOT.split(self.words)):
+            if i % 2:
+                slots.append(Slot(len(said), len(said) + len(words[piece]), piece in "wh"))
+            said += words[piece] if i % 2 else piece
+        return said, slots
 
 
 def denial_patterns() -> tuple[Pattern, ...]:
@@ -40,9 +54,12 @@ def denial_patterns() -> tuple[Pattern, ...]:
     return tuple(Pattern(kind, words) for kind, _, words in rows)
 
 
-def draw_denial(rng: random.Random, patterns: Sequence[Pattern], gesture: str, other: str) -> tuple[str, str]:
-    """A sentence with two gestures that is withheld from no training, and its kind."""
+def draw_denial(
+    rng: random.Random, patterns: Sequence[Pattern], gesture: str, other: str
+) -> tuple[str, str, list[Slot]]:
+    """A sentence with two gestures that is withheld from no training, its kind, and where the gestures stand."""
     while True:
         pattern = rng.choice(patterns)
-        if not is_withheld(said := pattern.filled(gesture, other)):
-            return said, pattern.kind
+        said, slots = pattern.filled(gesture, other)
+        if not is_withheld(said):
+            return said, pattern.kind, slots

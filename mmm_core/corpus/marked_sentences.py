@@ -2,7 +2,8 @@
 
 A sentence is written with all its words, and brackets around those that matter: `[1 ...]` a command of the first step, `[2a ...]` and
 `[2b ...]` commands of the second step at the same time, `[- ...]` an act that is denied, `[* ...]` words for all commands, `[x ...]` words that
-the speaker takes back. Words outside brackets are not needed: politeness, audiences, reasons, words of order.
+the speaker takes back. Words outside brackets are not needed: politeness, audiences, reasons, words of order. A command may name
+the corpus's gesture that it means in its sentence, with hyphens for spaces: `[2:point/up-left the other one at the lamp]`.
 
 Other sentences have braces around the words that say tempo or size: `{slow: ...}`, `{fast: ...}`, `{small: ...}`, `{large: ...}`.
 """
@@ -10,10 +11,12 @@ Other sentences have braces around the words that say tempo or size: `{slow: ...
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 from mmm_core.errors import TrainingDataError
+from mmm_core.language.plain_gestures import OUTSIDE as NO_GESTURE
 from mmm_core.language.tagged_words import (
     AGAIN,
     BEFORE,
@@ -30,8 +33,9 @@ from mmm_core.language.tagged_words import (
 _PROMPTS = Path(__file__).parent / "prompts"
 MARKED_SENTENCES, MANNER_SENTENCES = _PROMPTS / "marked_sentences.txt", _PROMPTS / "manner_sentences.txt"
 """The sentences that ship, with marked commands and with marked manner, one a line; lines that begin with # are comments."""
-_MARK = re.compile(r"\[(?P<label>\d[a-z]?|[-*xX]) (?P<words>[^\[\]]*)\]")
+_MARK = re.compile(r"\[(?P<label>\d[a-z]?|[-*xX])(?::(?P<gesture>[a-z_/-]+))? (?P<words>[^\[\]]*)\]")
 _MANNER_MARK = re.compile(r"\{(?P<label>slow|fast|small|large): *(?P<words>[^{}]*)\}")
+_BEFORE_MARK = re.compile(r" (?=[,.;:!?])")
 _BESIDE = {"-": DENIED, "*": FOR_ALL, "x": OUTSIDE}
 
 
@@ -43,15 +47,23 @@ class TaggedSentence:
         words: the words.
         tags: of each word, one of `mmm_core.language.tagged_words.TAGS`; empty where commands were not marked.
         manners: of each word, one of `mmm_core.language.tagged_words.MANNERS`; empty where manner was not marked.
+        gestures: commands whose gesture is known: first word, word after the last, and the gesture's name.
     """
 
     words: tuple[str, ...]
     tags: tuple[str, ...] = ()
     manners: tuple[str, ...] = ()
+    gestures: tuple[tuple[int, int, str], ...] = ()
 
 
 def read_marked(line: str, path: Path = MARKED_SENTENCES) -> tuple[str, list[str]]:
-    """A marked sentence as plain text, and the tag of each of its words.
+    """A marked sentence as plain text, and the tag of each of its words; see `read_commands`."""
+    sentence, tags, _ = read_commands(line, path)
+    return sentence, tags
+
+
+def read_commands(line: str, path: Path = MARKED_SENTENCES) -> tuple[str, list[str], list[tuple[int, int, str]]]:
+    """A marked sentence as plain text, the tag of each of its words, and its commands of known gesture, as in `TaggedSentence`.
 
     Args:
         line: the marked sentence.
@@ -60,8 +72,8 @@ def read_marked(line: str, path: Path = MARKED_SENTENCES) -> tuple[str, list[str
     Raises:
         TrainingDataError: a bracket is open, nested or without a label.
 
-    >>> read_marked("before you [2 clap], [1 raise your arms]")
-    ('before you clap, raise your arms', ['outside', 'outside', 'then', 'outside', 'before', 'inside', 'inside'])
+    >>> read_commands("before you [2:clap clap], [1 raise your arms]")
+    ('before you clap, raise your arms', ['outside', 'outside', 'then', 'outside', 'before', 'inside', 'inside'], [(2, 3, 'clap')])
     """
     sentence, marks = _without_marks(line, _MARK)
     if "[" in sentence or "]" in sentence:
@@ -71,14 +83,18 @@ def read_marked(line: str, path: Path = MARKED_SENTENCES) -> tuple[str, list[str
     spans = words_of(sentence)
     tags = [OUTSIDE] * len(spans)
     seen: list[str] = []
-    for start, end, label in marks:
+    gestures: list[tuple[int, int, str]] = []
+    for start, end, mark in marks:
+        label = mark["label"].lower()
         inside = [i for i, (a, b) in enumerate(spans) if a >= start and b <= end]
         for i in inside:
             tags[i] = _BESIDE.get(label, INSIDE)
         if label not in _BESIDE and inside:
             tags[inside[0]] = _relation(label, seen)
             seen = [*(other for other in seen if other != label), label]
-    return sentence, tags
+            if mark["gesture"]:
+                gestures.append((inside[0], inside[-1] + 1, mark["gesture"].replace("-", " ")))
+    return sentence, tags, gestures
 
 
 def read_manner(line: str, path: Path = MANNER_SENTENCES) -> tuple[str, list[str]]:
@@ -100,19 +116,19 @@ def read_manner(line: str, path: Path = MANNER_SENTENCES) -> tuple[str, list[str
             path, "", f"a brace that is no mark in {line!r}", "{slow: ...}, {fast: ...}, {small: ...} or {large: ...}"
         )
     manners = [
-        next((manner for start, end, manner in marks if start <= a and b <= end), NO_MANNER)
+        next((mark["label"] for start, end, mark in marks if start <= a and b <= end), NO_MANNER)
         for a, b in words_of(sentence)
     ]
     return sentence, manners
 
 
-def _without_marks(line: str, pattern: re.Pattern[str]) -> tuple[str, list[tuple[int, int, str]]]:
-    """A line without its marks; first character, end and label of the words of each mark."""
+def _without_marks(line: str, pattern: re.Pattern[str]) -> tuple[str, list[tuple[int, int, re.Match[str]]]]:
+    """A line without its marks; each mark with first character and end of its words."""
     sentence, at = "", 0
-    marks: list[tuple[int, int, str]] = []
+    marks: list[tuple[int, int, re.Match[str]]] = []
     for mark in pattern.finditer(line):
         sentence += line[at : mark.start()]
-        marks.append((len(sentence), len(sentence) + len(mark["words"]), mark["label"].lower()))
+        marks.append((len(sentence), len(sentence) + len(mark["words"]), mark))
         sentence, at = sentence + mark["words"], mark.end()
     return sentence + line[at:], marks
 
@@ -123,8 +139,11 @@ def load_marked_sentences(path: Path = MARKED_SENTENCES) -> list[TaggedSentence]
     Raises:
         TrainingDataError: the file is missing, or a line is not well marked.
     """
-    read = [read_marked(line, path) for line in _lines(path)]
-    return [TaggedSentence(_words(sentence), tags=tuple(tags)) for sentence, tags in read]
+    read = [read_commands(line, path) for line in _lines(path)]
+    return [
+        TaggedSentence(_words(sentence), tags=tuple(tags), gestures=tuple(gestures))
+        for sentence, tags, gestures in read
+    ]
 
 
 def load_manner_sentences(path: Path = MANNER_SENTENCES) -> list[TaggedSentence]:
@@ -135,6 +154,24 @@ def load_manner_sentences(path: Path = MANNER_SENTENCES) -> list[TaggedSentence]
     """
     read = [read_manner(line, path) for line in _lines(path)]
     return [TaggedSentence(_words(sentence), manners=tuple(manners)) for sentence, manners in read]
+
+
+def joined(words: Sequence[str]) -> str:
+    """A sentence of words and punctuation marks."""
+    return _BEFORE_MARK.sub("", " ".join(words))
+
+
+def asked_in(one: TaggedSentence) -> list[tuple[str, str, tuple[int, int]]]:
+    """The sentence with each of its commands of known gesture, and with each denied act, which is no gesture that is asked for.
+
+    Each comes with its gesture, or the class of texts that are none, and with its first character and its end.
+    """
+    denied = [i for i, tag in enumerate(one.tags) if tag == DENIED]
+    runs = [(i, next(k for k in range(i, len(one.tags) + 1) if k not in denied)) for i in denied if i - 1 not in denied]
+    return [
+        (joined(one.words), name, (len(joined((*one.words[:start], "x"))) - 1, len(joined(one.words[:end]))))
+        for start, end, name in (*one.gestures, *((start, end, NO_GESTURE) for start, end in runs))
+    ]
 
 
 def _words(sentence: str) -> tuple[str, ...]:

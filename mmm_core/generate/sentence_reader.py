@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 import torch
@@ -33,19 +34,13 @@ from mmm_core.language.plain_gestures import (
 from mmm_core.language.positions import in_said_order
 from mmm_core.language.reading import read
 from mmm_core.language.spelling import mended
+from mmm_core.language.sure_reading import is_sure, leaves_words_out, names_acts, needs_tags, unknown_commands
 from mmm_core.language.tagged_manner import manner_phrases, with_left_manner, with_likely_manner, with_plain_manner
-from mmm_core.language.tagged_reading import (
-    is_sure,
-    leaves_words_out,
-    names_acts,
-    needs_tags,
-    read_with_tags,
-    unknown_commands,
-)
-from mmm_core.language.tagged_words import likeliest_tags, words_of
+from mmm_core.language.tagged_reading import Meanings, read_with_tags
+from mmm_core.language.tagged_words import MarkedCommands, likeliest_tags, words_of
 from mmm_core.language.word_tables import REMEMBERED
-from mmm_core.model.gesture_classifier import GestureClassifier, meant_by, meant_by_states
-from mmm_core.model.sentence_tagger import SentenceTagger, WordStates, log_probability, word_states
+from mmm_core.model.gesture_classifier import GestureClassifier, meant_by, meant_by_parts, meant_by_states
+from mmm_core.model.sentence_tagger import SentenceTagger, WordStates, log_probability, pieces_of, word_states
 from mmm_core.model.text import MAX_WORD_PIECES, MiniLm, strip_emoji
 
 _FIRST_SENTENCE = "nod, and once you have done that, wave to the people who are waiting"
@@ -59,10 +54,12 @@ class _Encoded:
     Attributes:
         words: states of the sentence's words, or of those of its mirror image, which are the same but for left and right.
         meant: what the sentence most likely asks for.
+        is_image: whether the states are those of the mirror image.
     """
 
     words: WordStates
     meant: Meant
+    is_image: bool
 
 
 class SentenceReader:
@@ -133,11 +130,19 @@ class SentenceReader:
             in_plain, states_of_plain = read(plain), self._states(plain)
             loses_an_act = names_acts(by_rules) and not names_acts(in_plain)
             if not loses_an_act and not is_lost(states.meant, states_of_plain.meant):
-                return in_plain if is_sure(in_plain) else self._by_tags(in_plain, self._tagged(states_of_plain)[0])
-        return by_rules if is_sure(by_rules) else self._by_tags(by_rules, tags)
+                of_plain = self._tagged(states_of_plain)[0]
+                return in_plain if is_sure(in_plain) else self._by_tags(in_plain, of_plain, states_of_plain)
+        return by_rules if is_sure(by_rules) else self._by_tags(by_rules, tags, states)
 
-    def _by_tags(self, by_rules: Reading, tags: list[str]) -> Reading:
-        return read_with_tags(by_rules, tags, self._how_likely)
+    def _by_tags(self, by_rules: Reading, tags: list[str], states: _Encoded) -> Reading:
+        return read_with_tags(
+            by_rules, tags, Meanings(self._how_likely, partial(self._meant_in_sentence, states), states.meant)
+        )
+
+    def _meant_in_sentence(self, states: _Encoded, marked: MarkedCommands) -> list[Meant]:
+        parts = pieces_of(states.words, marked.numbers)
+        found = [Meant(*one) for one in meant_by_parts(self._classifier, states.words.states, parts)]
+        return list(map(_seen_in_mirror, found)) if states.is_image else found
 
     def _how_likely(self, reading: Reading) -> float:
         """The least probability with which a command of a reading is a gesture; 1 for phrases of the corpus."""
@@ -179,7 +184,7 @@ class SentenceReader:
         states = word_states(self._encoder, self._tagger.config.n_shared, [words])[0]
         mask = torch.ones(1, len(states.states), dtype=torch.bool)
         meant = Meant(*meant_by_states(self._classifier, states.states[None], mask)[0])
-        return _Encoded(states, _seen_in_mirror(meant) if is_image else meant)
+        return _Encoded(states, _seen_in_mirror(meant) if is_image else meant, is_image)
 
     def _tagged(self, states: _Encoded) -> tuple[list[str], NDArray[np.float32]]:
         """The likeliest tags of a sentence's words, and the (N, 5) log-probabilities of their manners."""

@@ -7,7 +7,7 @@ its plain command is "knock on the door with your left hand two times".
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import cache
 from types import MappingProxyType
@@ -15,6 +15,7 @@ from typing import NamedTuple
 
 from mmm_core.language.commands import PlainCommand, Reading
 from mmm_core.language.count_words import count_asked
+from mmm_core.language.known_phrases import is_known_phrase
 from mmm_core.language.limbs import ARMS, limbs_of
 from mmm_core.language.word_tables import pairs
 
@@ -127,6 +128,23 @@ def in_plain_words(reading: Reading, whole: Meant, commands: Mapping[str, Meant]
         return reading
     steps = tuple(tuple(_said(command, found.get(command.text, "")) for command in step) for step in reading.steps)
     return replace(reading, steps=steps, plain=False)
+
+
+def said_plainly(reading: Reading, meant: Sequence[Meant]) -> Reading:
+    """A reading whose commands are said in plain words where it is likely which gesture each means in its sentence.
+
+    Args:
+        reading: the sentence as it was read. Phrases of the corpus are left as they are.
+        meant: what each of its commands means in the sentence, in order; none where that is not known.
+    """
+    of_commands = iter(meant)
+    if not meant:
+        return reading
+    return replace(reading, steps=tuple(tuple(_in_sentence(c, next(of_commands)) for c in s) for s in reading.steps))
+
+
+def _in_sentence(command: PlainCommand, meant: Meant) -> PlainCommand:
+    return command if is_known_phrase(command.text) else _said(command, _plain_words(meant, command.text, SURE))
 
 
 def without_denied_acts(reading: Reading, whole: Meant) -> Reading:

@@ -36,11 +36,13 @@ class MarkedCommands:
         steps: commands in order of execution; each step holds the commands done at the same time.
         denied: acts that are not to be done.
         for_all: words that belong to every command, such as a hand or a tempo.
+        numbers: for each command of the steps in order, the numbers of its words in `words_of`.
     """
 
     steps: tuple[tuple[str, ...], ...]
     denied: tuple[str, ...]
     for_all: tuple[str, ...]
+    numbers: tuple[tuple[int, ...], ...] = ()
 
 
 def words_of(sentence: str) -> list[tuple[int, int]]:
@@ -102,6 +104,7 @@ def marked_commands(sentence: str, tags: Sequence[str]) -> MarkedCommands:
         tuple(tuple(said[k] for k in step) for step in order),
         tuple(_words(sentence, spans, act) for act in beside[DENIED]),
         tuple(_words(sentence, spans, words) for words in beside[FOR_ALL]),
+        tuple(tuple(commands[k]) for step in order for k in step),
     )
 
 

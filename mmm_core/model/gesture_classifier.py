@@ -1,7 +1,8 @@
 """Says which gesture of the corpus a text asks for, in which tempo and size, and whether it asks for any motion, in whatever words.
 
 The lower layers are the text encoder's own; the classifier adds copies of its next layers, trained further, and three linear
-layers on the mean of their states. The motion model reads words by the text encoder as it is, which knows the sentences of the
+layers on the mean of their states. Of a part of a text it says which gesture the part asks for in its text: "then to the right"
+after "look left". The motion model reads words by the text encoder as it is, which knows the sentences of the
 corpus well and other words for the same gestures less well.
 """
 
@@ -45,20 +46,31 @@ class GestureClassifier(nn.Module):
         self.manner = nn.Linear(text.width, len(config.manners))
         self.denial = nn.Linear(text.width, 1)
 
-    def forward(self, states: Tensor, mask: Tensor, dropout: float = 0.0) -> tuple[Tensor, Tensor, Tensor]:
-        """Scores (B, classes) of the classes of texts, (B, manners) of each manner by itself, and (B,) that nothing may move.
+    def forward(
+        self, states: Tensor, mask: Tensor, parts: Tensor, dropout: float = 0.0
+    ) -> tuple[Tensor, Tensor, Tensor]:
+        """Scores of the classes of parts, and of the manners and the denial of whole texts.
 
         Args:
             states: (B, W, D) states of word pieces after the encoder's shared layers.
             mask: (B, W) bool, true where there is a word piece.
+            parts: (N, W) bool, the word pieces of each part: one for each of B texts, or any number for one text.
             dropout: share of the values that training drops after each layer.
+
+        Returns:
+            (N, classes) scores of classes, (B, manners) of each manner by itself, and (B,) that nothing may move.
         """
         x = F.dropout(states, dropout, self.training)
         for layer in self.layers:
             x = F.dropout(layer(x, mask[:, None, None, :]), dropout, self.training)
-        weights = mask[..., None].to(x.dtype)
-        mean = (x * weights).sum(1) / weights.sum(1)
-        return self.gesture(mean), self.manner(mean), self.denial(mean).squeeze(-1)
+        whole = _mean(x, mask)
+        return self.gesture(_mean(x, parts)), self.manner(whole), self.denial(whole).squeeze(-1)
+
+
+def _mean(x: Tensor, where: Tensor) -> Tensor:
+    """(N, D) means of states (B, W, D) where (N, W) is true."""
+    weights = where[..., None].to(x.dtype)
+    return (x * weights).sum(1) / weights.sum(1)
 
 
 MeantByText = tuple[str, float, dict[str, float], float]
@@ -75,10 +87,27 @@ def meant_by(classifier: GestureClassifier, encoder: MiniLm, texts: Sequence[str
 @torch.inference_mode()
 def meant_by_states(classifier: GestureClassifier, states: Tensor, mask: Tensor) -> list[MeantByText]:
     """The class, the manners and the denial of each of B texts, from states (B, W, D) and mask (B, W) of `forward`."""
-    classes, manners, denials = classifier(states, mask)
-    probability, index = F.softmax(classes.float(), -1).max(-1)
+    classes, manners, denials = classifier(states, mask, mask)
     of_manners, of_denial = torch.sigmoid(manners.float()).tolist(), torch.sigmoid(denials.float()).tolist()
     return [
-        (classifier.config.classes[i], p, dict(zip(classifier.config.manners, some, strict=True)), denied)
-        for i, p, some, denied in zip(index.tolist(), probability.tolist(), of_manners, of_denial, strict=True)
+        (name, p, dict(zip(classifier.config.manners, some, strict=True)), denied)
+        for (name, p), some, denied in zip(_likeliest(classifier, classes), of_manners, of_denial, strict=True)
     ]
+
+
+@torch.inference_mode()
+def meant_by_parts(classifier: GestureClassifier, states: Tensor, parts: Tensor) -> list[tuple[str, float]]:
+    """The likeliest class of each of N parts of one text, with its probability.
+
+    Args:
+        classifier: the classifier.
+        states: (W, D) states of the text's word pieces after the shared layers.
+        parts: (N, W) bool, the word pieces of each part, at least one.
+    """
+    mask = torch.ones(1, len(states), dtype=torch.bool)
+    return _likeliest(classifier, classifier(states[None], mask, parts)[0])
+
+
+def _likeliest(classifier: GestureClassifier, scores: Tensor) -> list[tuple[str, float]]:
+    probability, index = F.softmax(scores.float(), -1).max(-1)
+    return [(classifier.config.classes[i], p) for i, p in zip(index.tolist(), probability.tolist(), strict=True)]

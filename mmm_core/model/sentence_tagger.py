@@ -100,3 +100,15 @@ def log_probability(tagger: SentenceTagger, words: WordStates) -> tuple[Tensor, 
     mask = torch.ones(1, len(words.states), dtype=torch.bool)
     tags, manners = tagger(words.states[None], mask, words.first_pieces[None])
     return F.log_softmax(tags[0].float(), -1), F.log_softmax(manners[0].float(), -1)
+
+
+def pieces_of(words: WordStates, numbers: Sequence[Sequence[int]]) -> Tensor:
+    """(N, W) bool, the word pieces of N groups of words, given by the words' numbers."""
+    n_pieces = len(words.states)
+    ends = [*words.first_pieces[1:].tolist(), n_pieces - 1]
+    found = torch.zeros(len(numbers), n_pieces, dtype=torch.bool)
+    for row, group in enumerate(numbers):
+        for word in group:
+            first = int(words.first_pieces[word])
+            found[row, first : max(first + 1, ends[word])] = True
+    return found

@@ -9,9 +9,15 @@ from typing import NamedTuple
 
 import numpy as np
 
-from mmm_core.corpus.denials import MEANT, NOTHING, denial_patterns, draw_denial
+from mmm_core.corpus.denials import MEANT, NOTHING, OTHER, denial_patterns, draw_denial
 from mmm_core.corpus.forms import REQUESTS
-from mmm_core.corpus.marked_sentences import TaggedSentence, load_manner_sentences, load_marked_sentences
+from mmm_core.corpus.marked_sentences import (
+    TaggedSentence,
+    asked_in,
+    joined,
+    load_manner_sentences,
+    load_marked_sentences,
+)
 from mmm_core.corpus.outside import OUTSIDE as OUTSIDE_TEXTS
 from mmm_core.corpus.outside import WRITTEN_OUTSIDE, outside_texts
 from mmm_core.corpus.plain_commands import plain_phrases
@@ -25,8 +31,10 @@ from mmm_core.training.slips import slip
 
 SEED = 0
 """Seed of the texts that are built from patterns."""
-_SHARE_OUTSIDE, _SHARE_MARKED, _SHARE_MANNER, _SHARE_DENIAL, _SHARE_JOINED = 0.12, 0.1, 0.13, 0.1, 0.06
+_SHARE_OUTSIDE, _SHARE_MARKED, _SHARE_MANNER, _SHARE_DENIAL, _SHARE_JOINED = 0.1, 0.08, 0.14, 0.1, 0.08
 """Shares of texts that are no gesture, of marked sentences of several commands, of manner, of denials, and of joined gestures."""
+_SHARE_PARTS, _SHARE_JOINED_PARTS = 0.18, 0.5
+"""Share of commands in marked sentences, and of joined gestures of which one is asked for instead of "several"."""
 _SHARE_WRITTEN = 0.5
 """Share of texts in words of the writers; others are phrases of the corpus, or built from patterns where they are no gesture."""
 _SHARE_REQUESTED, _SHARE_ENDED, _SHARE_SLIPS, _SHARE_LOWER, _SHARE_PUNCTUATED = 0.12, 0.12, 0.1, 0.12, 0.24
@@ -35,6 +43,7 @@ _SHARE_SIDED, _SHARE_BEFORE, _SHARE_BEHIND = 0.12, 0.06, 0.16
 """Shares of gestures with a hand named at their end, and of texts with other words before the gesture and behind it."""
 _SHARE_GERUND = 0.3
 """Share of joined texts that name their second gesture by a gerund: "bow while clapping"."""
+_HALF = 0.5
 _N_WORDS_BESIDE = range(2, 10)
 """Numbers of words that may stand beside a gesture."""
 _N_OUTSIDE = 8000
@@ -43,16 +52,24 @@ _JOINS = (" and ", ", then ", " and then ", ", ", " while you ", " after that ",
 _ENDS = (" please", " for me", " now", " for us")
 _MARKS = (".", "!", "?")
 _SIDE = re.compile(r"\b(?:left|right|both|hands|arms)\b")
-_BEFORE_MARK = re.compile(r" (?=[,.;:!?])")
 
 
 class Drawn(NamedTuple):
-    """A text with what it asks for; None where that is not known."""
+    """A text with what it asks for; None where that is not known.
+
+    Attributes:
+        text: the text.
+        name: the gesture of `part`, or the class of the whole text.
+        manners: tempos and sizes that the text names.
+        is_denied: whether it asks for no motion.
+        part: first character and end of the command that `name` is about; None for the whole text.
+    """
 
     text: str
     name: str | None
     manners: frozenset[str] | None = None
     is_denied: bool | None = None
+    part: tuple[int, int] | None = None
 
 
 class Texts:
@@ -65,10 +82,11 @@ class Texts:
         self._built = [*OUTSIDE_TEXTS, *outside_texts(_N_OUTSIDE, np.random.default_rng(SEED))]
         marked = load_marked_sentences()
         self._marked = [
-            (_joined(one.words), not _has_commands(one))
+            (joined(one.words), not _has_commands(one))
             for one in marked
             if sum(tag in BEGINS for tag in one.tags) > 1 or DENIED in one.tags
         ]
+        self._parts = [part for one in marked for part in asked_in(one)]
         self._denials = denial_patterns()
         self._commands = {
             g: [plain_command(g, ""), *filter(_is_imperative, (p.replace(" {n}", "") for p in self._corpus[g]))]
@@ -88,29 +106,45 @@ class Texts:
             return self._marked_sentence()
         if share < _SHARE_OUTSIDE + _SHARE_MARKED + _SHARE_MANNER:
             one = rng.choice(self._in_manner)
-            return Drawn(_joined(one.words), None, frozenset(one.manners) - {NO_MANNER})
+            return Drawn(joined(one.words), None, frozenset(one.manners) - {NO_MANNER})
         if share < _SHARE_OUTSIDE + _SHARE_MARKED + _SHARE_MANNER + _SHARE_DENIAL:
             return self._denial()
+        if share < _SHARE_OUTSIDE + _SHARE_MARKED + _SHARE_MANNER + _SHARE_DENIAL + _SHARE_PARTS and self._parts:
+            return self._part()
         one = self._gesture()
         if share > 1 - _SHARE_JOINED:
             other = self._gesture()
             if other.name != one.name:
-                return Drawn(_both(one.text, other.text, rng), SEVERAL, None, is_denied=False)
+                return _both(one, other, rng)
         return one
+
+    def _part(self) -> Drawn:
+        """A command of a marked sentence."""
+        rng = self._rng
+        sentence, name, part = rng.choice(self._parts)
+        return Drawn(sentence.lower() if rng.random() < _SHARE_LOWER else sentence, name, part=part)
 
     def _marked_sentence(self) -> Drawn:
         said, is_denied = self._rng.choice(self._marked)
         return Drawn(said, SEVERAL, None, is_denied)
 
     def _denial(self) -> Drawn:
-        """A sentence with a negative word; where it denies none of two gestures, its class is that of the one."""
+        """A sentence with a negative word, or one of its gestures; what is denied is no gesture that is asked for.
+
+        Where the sentence denies none of two gestures, its class is that of the one.
+        """
         rng = self._rng
         gesture, other = rng.sample(gestures(), 2)
-        said, kind = draw_denial(
+        said, kind, slots = draw_denial(
             rng, self._denials, rng.choice(self._commands[gesture]), rng.choice(self._commands[other])
         )
         if rng.random() < _SHARE_LOWER:
             said = said.lower()
+        if slots and rng.random() < _HALF:
+            slot = rng.choice(slots)
+            is_asked = kind == MEANT or (kind == OTHER and slot.is_other)
+            name = (other if slot.is_other else gesture) if is_asked else OUTSIDE
+            return Drawn(said, name, None, kind == NOTHING, (slot.start, slot.end))
         return Drawn(said, gesture if kind == MEANT else SEVERAL, None, kind == NOTHING)
 
     def _gesture(self) -> Drawn:
@@ -167,15 +201,10 @@ def _is_imperative(phrase: str) -> bool:
     return "{" not in phrase and is_gesture_verb(phrase.partition(" ")[0])
 
 
-def _joined(words: Sequence[str]) -> str:
-    """A sentence of words and punctuation marks."""
-    return _BEFORE_MARK.sub("", " ".join(words))
-
-
 def _outside(words: Sequence[str], tags: Sequence[str], step: int = 1) -> str:
     """The words outside commands that a sentence begins with; empty if these are few or many. With step -1 all is reversed."""
     n = next((i for i, tag in enumerate(tags) if tag != NO_COMMAND), 0)
-    said = _joined(words[:n][::step])
+    said = joined(words[:n][::step])
     return said if n in _N_WORDS_BESIDE and '"' not in said else ""
 
 
@@ -185,15 +214,22 @@ def _phrases_of_manner(one: TaggedSentence) -> list[tuple[str, str]]:
         manner: [word for word, of in zip(one.words, one.manners, strict=True) if of == manner]
         for manner in sorted({*one.manners} - {NO_MANNER})
     }
-    return [(_joined(words), manner) for manner, words in phrases.items() if len(words) in _N_WORDS_BESIDE]
+    return [(joined(words), manner) for manner, words in phrases.items() if len(words) in _N_WORDS_BESIDE]
 
 
-def _both(said: str, other: str, rng: random.Random) -> str:
-    """Two gestures joined to one text."""
-    first, second = said.rstrip("".join(_MARKS)), other[0].lower() + other[1:]
+def _both(one: Drawn, other: Drawn, rng: random.Random) -> Drawn:
+    """Two gestures joined to one text: several gestures, or a part of the text with its gesture."""
+    first, second = one.text.rstrip("".join(_MARKS)), other.text[0].lower() + other.text[1:]
     if rng.random() < _SHARE_GERUND and second.partition(" ")[0].isalpha():
-        return first + rng.choice(_JOINS_GERUND) + gerund(second, None)
-    return first + rng.choice(_JOINS) + second
+        join, second = rng.choice(_JOINS_GERUND), gerund(second, None)
+    else:
+        join = rng.choice(_JOINS)
+    said = first + join + second
+    if rng.random() >= _SHARE_JOINED_PARTS:
+        return Drawn(said, SEVERAL, None, is_denied=False)
+    if rng.random() < _HALF:
+        return Drawn(said, one.name, None, is_denied=False, part=(0, len(first)))
+    return Drawn(said, other.name, None, is_denied=False, part=(len(said) - len(second), len(said)))
 
 
 def _named(gesture: str) -> tuple[str, str]:

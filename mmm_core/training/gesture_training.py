@@ -19,7 +19,7 @@ from mmm_core.model.text import MiniLm
 from mmm_core.training.gesture_texts import Drawn, Texts
 from mmm_core.training.own_layers import Rates, copy_layers, fit
 
-STEPS, BATCH, TOGETHER = 2800, 64, 8
+STEPS, BATCH, TOGETHER = 3000, 64, 8
 """Optimisation steps, texts of a batch, and batches that are drawn together, so that each holds texts of similar length."""
 RATES = Rates(layers=2e-4, linear=2e-3, warm_up=50)
 DROPOUT, SMOOTHING = 0.1, 0.05
@@ -54,9 +54,10 @@ def train_classifier(
 
 def _loss(classifier: GestureClassifier, encoder: MiniLm, batch: Sequence[Drawn]) -> Tensor:
     ids, mask = encoder.piece_ids([one.text for one in batch])
+    parts = _pieces_of_parts(encoder, batch, mask)
     with torch.no_grad():
         states = encoder.lower_states(ids, mask, classifier.config.n_shared)
-    of_classes, of_manners, of_denial = classifier(states, mask, DROPOUT)
+    of_classes, of_manners, of_denial = classifier(states, mask, parts, DROPOUT)
     names = [-1 if one.name is None else classifier.config.classes.index(one.name) for one in batch]
     loss = F.cross_entropy(of_classes, torch.tensor(names), ignore_index=-1, label_smoothing=SMOOTHING)
     known = [i for i, one in enumerate(batch) if one.manners is not None]
@@ -68,6 +69,20 @@ def _loss(classifier: GestureClassifier, encoder: MiniLm, batch: Sequence[Drawn]
         denied = torch.tensor([float(batch[i].is_denied or 0) for i in known])
         loss = loss + F.binary_cross_entropy_with_logits(of_denial[known], denied)
     return loss
+
+
+def _pieces_of_parts(encoder: MiniLm, batch: Sequence[Drawn], mask: Tensor) -> Tensor:
+    """(B, W) bool, the word pieces of each text's part; all where it has none, or where the text is cut before it."""
+    parts = mask.clone()
+    for row, (one, encoded) in enumerate(
+        zip(batch, encoder.word_pieces.encode_batch([one.text for one in batch]), strict=True)
+    ):
+        if one.part is not None:
+            start, end = one.part
+            within = [a < b and start <= a and b <= end for a, b in encoded.offsets]
+            if any(within):
+                parts[row, : len(within)] = torch.tensor(within)
+    return parts
 
 
 def _batches(draw: Draw) -> Iterator[list[Drawn]]:

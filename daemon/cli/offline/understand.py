@@ -57,7 +57,7 @@ def _read(text: str) -> Reading:
     """The reading of a text; the tagger, and PyTorch with it, is loaded where a command is no known phrase."""
     from mmm_core.language.hard_phrases import without_hard_phrases
     from mmm_core.language.reading import read
-    from mmm_core.language.tagged_reading import needs_tags
+    from mmm_core.language.sure_reading import needs_tags
 
     by_rules = read(text)
     return _reader().read(text) if needs_tags(by_rules) else without_hard_phrases(text, by_rules)

@@ -35,7 +35,7 @@ def test_marks_become_tags_that_mark_the_same_commands() -> None:
     n_commands = 0
     for line in _lines():
         marked = marked_commands(*read_marked(line))
-        labels = re.findall(r"\[(\d[a-z]?) ", line)
+        labels = re.findall(r"\[(\d[a-z]?)(?::[a-z_/-]+)? ", line)
         assert sum(map(len, marked.steps)) == len(set(labels)), line
         assert len(marked.steps) == len({label[0] for label in labels}), line
         assert bool(marked.denied) == ("[- " in line), line

@@ -10,7 +10,8 @@ from mmm_core.corpus.marked_sentences import read_marked
 from mmm_core.language.asides import without_asides
 from mmm_core.language.commands import PlainCommand, Reading
 from mmm_core.language.reading import read
-from mmm_core.language.tagged_reading import is_sure, read_with_tags
+from mmm_core.language.sure_reading import is_sure
+from mmm_core.language.tagged_reading import Meanings, read_with_tags
 from mmm_core.language.tagged_words import TAGS, words_of
 
 SENTENCES = (
@@ -78,7 +79,7 @@ def test_words_that_name_no_act_are_commands_where_they_are_likely(
         return min(float(command.text in likely) for step in reading.steps for command in step)
 
     assert said != [text for step in steps for text in step] or not likely
-    found = read_with_tags(read(sentence), tags, how_likely)
+    found = read_with_tags(read(sentence), tags, Meanings(how_likely))
     assert [[command.text.lower() for command in step] for step in found.steps] == [
         [text.lower() for text in step] for step in steps
     ]
@@ -87,7 +88,7 @@ def test_words_that_name_no_act_are_commands_where_they_are_likely(
 def test_what_a_likely_reading_does_not_deny_is_not_done() -> None:
     sentence, tags = read_marked("There is no need for [1 that thing with the fists]")
     rules = read(sentence)
-    assert read_with_tags(rules, tags, lambda reading: float(reading != rules)) == rules
+    assert read_with_tags(rules, tags, Meanings(lambda reading: float(reading != rules))) == rules
 
 
 def test_tags_without_a_command_leave_the_reading_of_the_rules() -> None:

@@ -1,0 +1,109 @@
+"""Whether the rules read a sentence surely: what a tagger and a classifier have to be asked about."""
+
+from __future__ import annotations
+
+import re
+
+from mmm_core.language.clause_patterns import BEGINS_WITH_A_VERB, LIMB_FIRST
+from mmm_core.language.commands import Reading
+from mmm_core.language.known_phrases import CAPTION_SUBJECT, is_known_phrase, key_of
+from mmm_core.language.limbs import is_gesture_verb, limbs_of
+from mmm_core.language.stop_words import means_stop
+
+_JOINS = re.compile(
+    r"[,;:.]|\b(?:and|then|while|but|before|after|once (?:you|the|they|it|he|she|i|we|that)|when|as|so|that|if|because|for)\b"
+)
+"""Marks and words of which a single command seldom has one: more than one command, a reason or a story may be left in it."""
+_LIMB_ALONE = re.compile(
+    r"^(?:(?:and |with )*(?:your |both |the )?(?:left |right )?(?:hands?|arms?|head|fists?|palms?|shoulders?|elbows?)(?: one)?|"
+    r"(?:the |your )?eyes|that)$"
+)
+_STOPS = re.compile(r"^(?:then )?stop\b(?! sign)")
+_IS_OPEN = re.compile(
+    r"\b(?:to|as|as if|like|how|that|who|then|an?|the|with|without|of|for|from|and)$|"
+    r"^(?:mime|pretend|act|make|do|does|with)\b(?: \w+)?$"
+)
+_NOUN_FIRST = re.compile(r"(?:an?|one|two|three|\w+) \w+")
+_IS_CAPTION = re.compile(CAPTION_SUBJECT)
+_BESIDE = re.compile(
+    r"(?:,? (?:exactly|just|only))* (?:(?:\w+ times?|a single time)(?: in a row)?|once|twice)\b|"
+    r"(?: with| using) (?:the|your|their|his|her|its|both) (?:left |right )?(?:arm|hand)s?\b"
+)
+"""Number of strokes and hand of a command."""
+_LONGEST_SURE = 9
+"""Words of a command that the rules are sure of, at most."""
+_DENIES_TWO = re.compile(r"\b(?:or|nor|and no)\b")
+_LONGEST_DENIED = 6
+"""Words of a denied act, at most, in which no command is sought."""
+_COMPARES = re.compile(r"\b(?:as if|as though|like)\b")
+_MOST_LEFT_OUT = 4
+"""Words that a sentence has beyond those of its command, at most, without being looked at for words of manner."""
+
+
+def is_sure(reading: Reading) -> bool:
+    """Whether the rules divided it rightly in all likelihood.
+
+    Each command is a phrase of the corpus, or is short, begins as a command does, and has no word that joins commands.
+    """
+    commands = [command.text.lower() for step in reading.steps for command in step]
+    if not commands:
+        return bool(reading.denied) and all(
+            len(what.split()) <= _LONGEST_DENIED or _DENIES_TWO.search(what) for what in reading.denied
+        )
+    if len(commands) == 1 and _IS_CAPTION.match(commands[0]):
+        return True
+    return all(is_known_phrase(_BESIDE.sub("", command)) or _is_simple(command) for command in commands)
+
+
+def needs_tags(reading: Reading) -> bool:
+    """Whether the rules are not sure, or the sentence has words that the corpus does not know and that may say a manner.
+
+    Such words are in a command that is no phrase of the corpus, or in a comparison that was left out as not needed.
+    """
+    commands = [_BESIDE.sub("", command.text.lower()) for step in reading.steps for command in step]
+    if len(commands) == 1 and _IS_CAPTION.match(commands[0]):
+        return False
+    known = all(key_of(command) is None or is_known_phrase(command) for command in commands)
+    compares = _COMPARES.search(reading.text) is not None and not any(map(_COMPARES.search, commands))
+    return compares or not (known and is_sure(reading))
+
+
+def leaves_words_out(reading: Reading) -> bool:
+    """Whether a sentence of one command has so many other words that some of them may say its manner."""
+    said = [command.text for step in reading.steps for command in step]
+    return len(said) == 1 and len(reading.text.split()) - len(said[0].split()) > _MOST_LEFT_OUT
+
+
+def unknown_commands(reading: Reading) -> list[str]:
+    """The words of the commands that are no phrases of the corpus, each once; short ones that begin with a gesture's verb are."""
+    said = [command.text for step in reading.steps for command in step]
+    return [text for text in dict.fromkeys(said) if not _is_known(_BESIDE.sub("", text.lower()))]
+
+
+def _is_known(command: str) -> bool:
+    return is_gesture_verb(command.partition(" ")[0]) if key_of(command) is None else is_known_phrase(command)
+
+
+def names_acts(reading: Reading) -> bool:
+    """Whether each command begins with a verb or names a limb, or is a phrase of the corpus."""
+    return all(_stands_alone(command.text.lower()) for step in reading.steps for command in step)
+
+
+def _is_simple(command: str) -> bool:
+    words = command.split()
+    if len(words) > _LONGEST_SURE or _JOINS.search(command.rstrip(" .")):
+        return False
+    begins = begins_with_a_verb(command) or LIMB_FIRST.match(command) is not None
+    return begins or (_NOUN_FIRST.match(command) is not None and bool(limbs_of(command)))
+
+
+def _stands_alone(command: str) -> bool:
+    """Whether words are a command: they begin with a verb, or name a limb and more than the limb, and do not say to stop."""
+    if means_stop(command) or any(pattern.search(command) for pattern in (_STOPS, _LIMB_ALONE, _IS_OPEN)):
+        return False
+    return begins_with_a_verb(command) or bool(limbs_of(command)) or is_known_phrase(command)
+
+
+def begins_with_a_verb(words: str) -> bool:
+    """Whether words in lower case begin as a command does."""
+    return BEGINS_WITH_A_VERB.match(words) is not None or is_gesture_verb(words.partition(" ")[0])
