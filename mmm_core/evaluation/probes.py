@@ -10,7 +10,7 @@ from mmm_core.corpus.heldout import PROBES, Probe
 from mmm_core.motion.motion import Motion
 from mmm_core.motion.posture_features import PostureFeatures, part, posture_features
 from mmm_core.recognition import checks
-from mmm_core.recognition.expected import acts_with, goes, moves
+from mmm_core.recognition.expected import acts_with, goes, is_seen, moves
 from mmm_core.recognition.signs import shows
 
 SLOW_CYCLE_S, FAST_CYCLE_S = 0.72, 0.64
@@ -50,15 +50,10 @@ def _in_order(first: Probe, second: Probe, shown: PostureFeatures) -> bool:
     n_frames = len(shown.head_yaw_deg)
 
     def parts(a: Probe, b: Probe, t: int) -> bool:
-        return _is_seen(a, part(shown, 0, t)) and _is_seen(b, part(shown, t, n_frames))
+        return is_seen(part(shown, 0, t), a, [b]) and is_seen(part(shown, t, n_frames), b, [a])
 
     moments = range(MIN_PART, n_frames - MIN_PART, 2)
     return any(parts(first, second, t) for t in moments) and not any(parts(second, first, t) for t in moments)
-
-
-def _is_seen(probe: Probe, shown: PostureFeatures) -> bool:
-    ok = moves(shown, probe.family, probe.limb) and (not probe.side or acts_with(shown, probe.family, probe.side))
-    return ok and (not probe.direction or goes(shown, probe.family, probe.side, probe.direction))
 
 
 def evaluate(

@@ -17,13 +17,12 @@ from mmm_core.motion.motion import Motion
 from mmm_core.motion.posture_features import PostureFeatures, part, posture_features
 from mmm_core.motion.skeleton import standing_joints
 from mmm_core.recognition import checks
-from mmm_core.recognition.expected import acts_with, goes, moves
+from mmm_core.recognition.expected import goes, is_seen
 from mmm_core.recognition.signs import shows
 
 Generate = Callable[[str, int], Motion]
 _REST = 0.35
 """Share of the greatest distance from the first frame below which the body is at rest."""
-_ARMS_OF = {"alternating": "both"}
 _PART_STEP = 4
 """Frames between two moments at which a motion is divided."""
 
@@ -183,7 +182,7 @@ def _in_turn(steps: Sequence[Sequence[Command]], shown: PostureFeatures) -> bool
     parts: dict[tuple[int, int], PostureFeatures] = {}
     seen: dict[tuple[int, int, int], bool] = {}
 
-    def is_seen(i: int, start: int, end: int) -> bool:
+    def step_seen(i: int, start: int, end: int) -> bool:
         if (i, start, end) not in seen:
             if (start, end) not in parts:
                 parts[start, end] = part(shown, start, end)
@@ -194,7 +193,7 @@ def _in_turn(steps: Sequence[Sequence[Command]], shown: PostureFeatures) -> bool
         edges = [0, *cuts, T]
         if any(b - a < MIN_PART for a, b in pairwise(edges)):
             return False
-        return all(is_seen(i, edges[k], edges[k + 1]) for k, i in enumerate(order))
+        return all(step_seen(i, edges[k], edges[k + 1]) for k, i in enumerate(order))
 
     forward = list(range(len(steps)))
     found = any(parted(forward, cuts) for cuts in combinations(moments, len(steps) - 1))
@@ -225,22 +224,8 @@ def _at_rest(shown: PostureFeatures) -> np.ndarray:
 
 
 def _step_seen(steps: Sequence[Sequence[Command]], i: int, shown: PostureFeatures) -> bool:
-    """Whether a part of a motion shows a step: its limb, side and direction, and its sign if a neighbour may share these."""
+    """Whether a part of a motion shows a step."""
     step = steps[i]
     if len(step) > 1:
         return seen_at_once(step, shown)
-    c = step[0]
-    if not moves(shown, c.family, c.limb):
-        return False
-    if c.side and not acts_with(shown, c.family, c.side):
-        return False
-    if c.direction and not goes(shown, c.family, c.side, c.direction):
-        return False
-    alike = any(_may_look_alike(steps[k][0], c) for k in (i - 1, i + 1) if 0 <= k < len(steps))
-    return not alike or shows(shown, c.family, c.side, c.direction)
-
-
-def _may_look_alike(one: Command, other: Command) -> bool:
-    """Whether two commands cannot be told apart by limb, side and direction; a side or direction that is left open may be any."""
-    sides, ways = ({_ARMS_OF.get(c.side, c.side) for c in (one, other)}, {one.direction, other.direction})
-    return one != other and one.limb == other.limb and all(len(said) == 1 or "" in said for said in (sides, ways))
+    return is_seen(shown, step[0], [steps[k][0] for k in (i - 1, i + 1) if 0 <= k < len(steps)])

@@ -12,13 +12,17 @@ from mmm_core.corpus.heldout import read_sentences
 from mmm_core.corpus.marked_sentences import (
     MANNER_SENTENCES,
     MARKED_SENTENCES,
+    TaggedSentence,
+    asked_in,
     load_manner_sentences,
     load_marked_sentences,
+    read_commands,
     read_manner,
     read_marked,
 )
 from mmm_core.errors import TrainingDataError
-from mmm_core.language.tagged_words import marked_commands
+from mmm_core.language.plain_gestures import OUTSIDE, gestures
+from mmm_core.language.tagged_words import marked_commands, words_of
 
 PROMPTS = MARKED_SENTENCES.parent
 
@@ -41,6 +45,19 @@ def test_marks_become_tags_that_mark_the_same_commands() -> None:
         assert bool(marked.denied) == ("[- " in line), line
         n_commands += len(set(labels))
     assert n_commands > 5000
+
+
+def test_a_command_may_name_its_gesture_and_a_denied_act_is_none() -> None:
+    sentence, tags, asked = read_commands("[1:look/up-left Up and left], don't [- nod], [2 clap].")
+    assert (sentence, asked) == ("Up and left, don't nod, clap.", [(0, 3, "look/up left")])
+    one = TaggedSentence(tuple(sentence[a:b] for a, b in words_of(sentence)), tuple(tags), (), tuple(asked))
+    found = [(said[slice(*part)], name) for said, name, part in asked_in(one)]
+    assert found == [("Up and left", "look/up left"), ("nod", OUTSIDE)]
+
+
+def test_every_gesture_that_a_command_names_is_one_of_the_corpus() -> None:
+    named = {name for one in load_marked_sentences() for _, _, name in one.gestures}
+    assert named <= {*gestures(), OUTSIDE} and len(named) > 150
 
 
 def test_no_marked_sentence_is_one_of_the_sentences_that_measure_it() -> None:

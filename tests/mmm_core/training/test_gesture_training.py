@@ -16,7 +16,8 @@ from mmm_core.errors import CheckpointError
 from mmm_core.inference.checkpoint import load_text_encoder, save_tensors
 from mmm_core.inference.own_layers_file import load_classifier
 from mmm_core.language.plain_gestures import OUTSIDE, SEVERAL, gestures
-from mmm_core.model.gesture_classifier import meant_by
+from mmm_core.model.gesture_classifier import meant_by, meant_by_parts
+from mmm_core.model.sentence_tagger import pieces_of, word_states
 from mmm_core.training.gesture_texts import Drawn, Texts
 from mmm_core.training.gesture_training import Draw, train_classifier
 
@@ -25,6 +26,8 @@ GIVEN = (
     Drawn("look skywards", "look/up", frozenset()),
     Drawn("do my taxes", OUTSIDE, None, is_denied=True),
     Drawn("as slow as syrup", None, frozenset({"slow", "small"})),
+    Drawn("once you have knocked, look up", "knock", part=(14, 21)),
+    Drawn("once you have knocked, look up", "look/up", part=(23, 30)),
 )
 CLASSES = ("knock", "look/up", OUTSIDE)
 
@@ -35,7 +38,7 @@ def _draw() -> Draw:
 
 
 def test_it_learns_the_texts_it_is_given_and_is_read_back(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("mmm_core.training.gesture_training.BATCH", 8)
+    monkeypatch.setattr("mmm_core.training.gesture_training.BATCH", 12)
     path = tmp_path / "classifier.safetensors"
     trained = train_classifier(path, _draw(), classes=CLASSES, steps=48)
     encoder, texts = load_text_encoder(), [one.text for one in GIVEN]
@@ -45,6 +48,11 @@ def test_it_learns_the_texts_it_is_given_and_is_read_back(tmp_path: Path, monkey
         found = [{manner for manner, p in manners.items() if p > 0.5} for _, _, manners, _ in meant]
         assert [found[i] for i in (0, 1, 3)] == [{"fast"}, set(), {"slow", "small"}]
         assert meant[0][3] < 0.5 < meant[2][3]
+        words = word_states(
+            encoder, classifier.config.n_shared, [["once", "you", "have", "knocked", ",", "look", "up"]]
+        )[0]
+        parts = meant_by_parts(classifier, words.states, pieces_of(words, [(3,), (5, 6)]))
+        assert [name for name, _ in parts] == ["knock", "look/up"]
     assert all(not p.requires_grad for p in trained.parameters())
 
 
@@ -63,6 +71,14 @@ def test_texts_of_every_class_are_drawn_and_none_keeps_a_slot() -> None:
     assert {manner for one in drawn for manner in one.manners or ()} == {"slow", "fast", "small", "large"}
     assert sum(bool(one.is_denied) for one in drawn) > 200
     assert not [one.text for one in drawn if re.search(r"\{[SDNnv]\}", one.text) or not one.text.strip()]
+
+
+def test_parts_of_texts_are_commands_in_them_and_denied_acts_are_no_gesture() -> None:
+    texts = Texts(random.Random(2))
+    parts = [one for one in (texts.draw() for _ in range(4000)) if one.part is not None]
+    said = [one.text[slice(*one.part)] for one in parts if one.part is not None]
+    assert len(parts) > 700 and all(words and words == words.strip() for words in said)
+    assert sum(one.name == OUTSIDE for one in parts) > 100 and len({one.name for one in parts}) > 150
 
 
 def test_a_classifier_of_another_text_encoder_is_refused(tmp_path: Path) -> None:
