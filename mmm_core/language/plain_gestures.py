@@ -140,11 +140,42 @@ def said_plainly(reading: Reading, meant: Sequence[Meant]) -> Reading:
     of_commands = iter(meant)
     if not meant:
         return reading
-    return replace(reading, steps=tuple(tuple(_in_sentence(c, next(of_commands)) for c in s) for s in reading.steps))
+    return replace(
+        reading, steps=tuple(tuple(in_plain_words_of(c, next(of_commands)) for c in s) for s in reading.steps)
+    )
 
 
-def _in_sentence(command: PlainCommand, meant: Meant) -> PlainCommand:
+def in_plain_words_of(command: PlainCommand, meant: Meant) -> PlainCommand:
+    """A command in plain words of the gesture that it means, if that is likely; phrases of the corpus stay as they are."""
     return command if is_known_phrase(command.text) else _said(command, _plain_words(meant, command.text, SURE))
+
+
+def without_unasked(reading: Reading, meant: Sequence[Meant]) -> Reading:
+    """A reading of a sentence that may deny something, in which commands that it does not ask for in all likelihood are denied.
+
+    Args:
+        reading: the sentence as it was read.
+        meant: what each of its commands means in the sentence, in order; none where that is not known.
+    """
+    if not meant or _MAY_DENY.search(reading.text.lower()) is None:
+        return reading
+    of_commands = iter(meant)
+    is_asked = [[not is_surely_outside(next(of_commands)) for _ in step] for step in reading.steps]
+    denied = [
+        c.text
+        for s, asked in zip(reading.steps, is_asked, strict=True)
+        for c, ok in zip(s, asked, strict=True)
+        if not ok
+    ]
+    kept = (
+        tuple(c for c, ok in zip(s, asked, strict=True) if ok) for s, asked in zip(reading.steps, is_asked, strict=True)
+    )
+    return replace(reading, steps=tuple(filter(None, kept)), denied=(*reading.denied, *denied)) if denied else reading
+
+
+def is_surely_outside(meant: Meant) -> bool:
+    """Whether words ask for no gesture in all likelihood."""
+    return meant.name == OUTSIDE and meant.probability >= SURELY_DENIED
 
 
 def without_denied_acts(reading: Reading, whole: Meant) -> Reading:

@@ -19,7 +19,14 @@ from mmm_core.language.denial import denied_side, with_other_side
 from mmm_core.language.ellipsis import OTHER, completed
 from mmm_core.language.known_phrases import is_known_phrase
 from mmm_core.language.one_arm import of_one_arm
-from mmm_core.language.plain_gestures import SEVERAL, Meant, is_sure_of, said_plainly
+from mmm_core.language.plain_gestures import (
+    SEVERAL,
+    Meant,
+    in_plain_words_of,
+    is_sure_of,
+    said_plainly,
+    without_unasked,
+)
 from mmm_core.language.reading import command_of, read
 from mmm_core.language.requests import without_request
 from mmm_core.language.spelling import mended
@@ -73,17 +80,33 @@ def read_with_tags(by_rules: Reading, tags: Sequence[str], meanings: Meanings = 
     marked = marked_commands(by_rules.text, _without_splits(by_rules.text, tags))
     if not _can_be_read(marked):
         return by_rules
-    by_tags = _read_marked(by_rules.text, marked)
+    meant = meanings.in_sentence(marked)
+    by_tags = without_unasked(said_plainly(_read_marked(by_rules.text, marked), meant), meant)
     if by_rules.denied and not by_tags.denied:  # what is denied must not be done
         return by_rules
-    by_tags = said_plainly(by_tags, meanings.in_sentence(marked))
     divides_alike = _shape(by_rules) == _shape(by_tags) and not (by_rules.denied and is_sure(by_tags))
     if names_acts(by_tags) and not divides_alike and not _splits_one(by_rules, by_tags, meanings.whole):
         return by_tags
+    by_rules = _with_plain_words(by_rules, marked, meant)
     if _MAY_DENY.search(by_rules.text.lower()) or by_tags.denied or not _has_words_enough(by_tags):
         return by_rules
     is_better = meanings.how_likely(by_rules) < _LIKELY <= meanings.how_likely(by_tags)
     return _with_manner_of(by_rules, by_tags) if is_better else by_rules
+
+
+def _with_plain_words(by_rules: Reading, marked: MarkedCommands, meant: Sequence[Meant]) -> Reading:
+    """The rules' reading, whose unknown commands are said as the marked command means that shares most words with each."""
+    unknown = unknown_commands(by_rules)
+    if not meant or not unknown:
+        return by_rules
+    words = [set(said.lower().split()) for step in marked.steps for said in step]
+
+    def plain(command: PlainCommand) -> PlainCommand:
+        shared = [len(said & set(command.text.lower().split())) for said in words]
+        best = max(range(len(words)), key=lambda i: shared[i])
+        return in_plain_words_of(command, meant[best]) if command.text in unknown and shared[best] else command
+
+    return replace(by_rules, steps=tuple(tuple(map(plain, step)) for step in by_rules.steps))
 
 
 def _splits_one(by_rules: Reading, by_tags: Reading, whole: Meant) -> bool:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from mmm_core.corpus.families import FAMILIES
-from mmm_core.language.commands import Reading
+from mmm_core.language.commands import PlainCommand, Reading
 from mmm_core.language.limbs import limbs_of
 from mmm_core.language.plain_gestures import (
     OUTSIDE,
@@ -18,6 +18,7 @@ from mmm_core.language.plain_gestures import (
     in_plain_words,
     plain_command,
     without_denied_acts,
+    without_unasked,
 )
 from mmm_core.language.reading import read
 
@@ -93,3 +94,20 @@ def test_a_sentence_that_asks_for_nothing_has_no_commands() -> None:
     told = read("clap, then bow")
     assert without_denied_acts(told, Meant(SEVERAL, 0.9, denied=1.0)) == told, "no word of it denies"
     assert nothing.denied == tuple(command.text for step in found.steps for command in step)
+
+
+@pytest.mark.parametrize(
+    ("said", "probability", "steps", "denied"),
+    [
+        ("no clap now, bow", 0.95, ["bow"], ("clap",)),
+        ("no clap now, bow", 0.85, ["clap", "bow"], ()),
+        ("now clap, bow", 0.95, ["clap", "bow"], ()),
+    ],
+)
+def test_what_a_sentence_that_may_deny_surely_does_not_ask_for_is_denied(
+    said: str, probability: float, steps: list[str], denied: tuple[str, ...]
+) -> None:
+    given = Reading(said, ((PlainCommand("clap"),), (PlainCommand("bow"),)))
+    found = without_unasked(given, [Meant(OUTSIDE, probability), Meant("bow", 0.99)])
+    assert ([step[0].text for step in found.steps], found.denied) == (steps, denied)
+    assert without_unasked(given, ()) == given

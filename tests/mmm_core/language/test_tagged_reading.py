@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 from mmm_core.corpus.marked_sentences import read_marked
 from mmm_core.language.asides import without_asides
 from mmm_core.language.commands import PlainCommand, Reading
+from mmm_core.language.plain_gestures import OUTSIDE, Meant
 from mmm_core.language.reading import read
 from mmm_core.language.sure_reading import is_sure
 from mmm_core.language.tagged_reading import Meanings, read_with_tags
@@ -95,6 +96,36 @@ def test_tags_without_a_command_leave_the_reading_of_the_rules() -> None:
     sentence = "wave and so on, if you like"
     by_rules = read(sentence)
     assert read_with_tags(by_rules, read_marked(sentence)[1]) is by_rules
+
+
+@pytest.mark.parametrize(
+    ("marked", "meant", "steps", "denied"),
+    [
+        # words that the rules cannot complete mean a gesture in their sentence
+        ("[1 Twist to the left]; [2 likewise clockwise]", ("twist/left", "twist/right"),
+         [["twist to the left"], ["turn your upper body to the right"]], ()),
+        # both divide alike: the rules' words stay where they are a phrase of the corpus
+        ("[1 clap your hands], then [2 it's a wee tune on the tin whistle]", ("clap", "flute"),
+         [["clap your hands"], ["play the flute"]], ()),
+        # what a sentence that may deny does not ask for is denied
+        ("[1 clapping] is for the others and not for you, who [2 bow]", (OUTSIDE, "bow"), [["bow politely"]], ("clap",)),
+    ],
+)  # fmt: skip
+def test_what_a_command_means_in_its_sentence(
+    marked: str, meant: tuple[str, ...], steps: list[list[str]], denied: tuple[str, ...]
+) -> None:
+    sentence, tags = read_marked(marked)
+    meanings = Meanings(lambda _: 1.0, lambda _: [Meant(name, 0.95) for name in meant])
+    found = read_with_tags(read(sentence), tags, meanings)
+    assert [[command.text.lower() for command in step] for step in found.steps] == steps
+    assert found.denied == denied
+
+
+def test_a_sentence_that_surely_means_one_gesture_is_not_divided_by_tags_alone() -> None:
+    sentence, tags = read_marked("[1 Hammer the nail in], [2 pull that face] when you do")
+    by_rules = Reading(sentence, ((PlainCommand("hammer the nail in"),),))
+    assert len(read_with_tags(by_rules, tags).steps) == 2
+    assert read_with_tags(by_rules, tags, Meanings(whole=Meant("hammer", 0.9))) == by_rules
 
 
 @pytest.mark.parametrize(
