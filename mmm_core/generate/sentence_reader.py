@@ -161,9 +161,8 @@ class SentenceReader:
         parted = with_parted_commands(found, by_text, self._classes)
         if parted is not found:
             return self._in_plain_words(parted, states)
-        acts = {text: one.probability if is_gesture(one.name) else 0.0 for text, one in by_text.items()}
         by_words = {text: one.manners for text, one in by_text.items()}
-        return in_plain_words(with_likely_manner(without_asides(found, acts), {}, by_words), whole, by_text)
+        return in_plain_words(with_likely_manner(without_asides(found, by_text), {}, by_words), whole, by_text)
 
     def _classes(self, commands: Sequence[str]) -> dict[str, Meant]:
         """The gesture that each command most likely asks for, with its probability."""

@@ -1,4 +1,4 @@
-"""Leaves out statements beside commands: "you are grand", "he will feel at home"."""
+"""Leaves out what is no command: statements beside commands ("he will feel at home"), courtesy beside a denial ("thanks a lot")."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from dataclasses import replace
 
 from mmm_core.language.commands import Reading
 from mmm_core.language.limbs import limbs_of
+from mmm_core.language.plain_gestures import Meant, is_gesture, is_surely_outside
 from mmm_core.language.sure_reading import begins_with_a_verb
 
 _MAY_BE_A_GESTURE = 0.5
@@ -18,17 +19,22 @@ _STATES = re.compile(
 """Subject and verb of a statement."""
 
 
-def without_asides(reading: Reading, meant: Mapping[str, float]) -> Reading:
-    """A reading without statements beside commands or a denial: "you are grand", "he will feel at home".
+def without_asides(reading: Reading, meant: Mapping[str, Meant]) -> Reading:
+    """A reading without statements beside commands, and without what is surely no gesture beside a denial.
 
     Such words are no phrase of the corpus, begin with no verb, name no limb, and probably mean no gesture. `notes` names them.
 
     Args:
         reading: the reading.
-        meant: of the commands that are no phrases of the corpus, the probability that they mean a gesture.
+        meant: what the commands mean that are no phrases of the corpus.
     """
-    unlikely = [text for text, probability in meant.items() if probability < _MAY_BE_A_GESTURE]
-    asides = [text for text in unlikely if _is_statement(text.lower())]
+    asides = [
+        text
+        for text, one in meant.items()
+        if _names_no_act(text.lower())
+        and not (is_gesture(one.name) and one.probability >= _MAY_BE_A_GESTURE)
+        and (_STATES.match(text.lower()) or (reading.denied and is_surely_outside(one)))
+    ]
     kept = tuple(tuple(c for c in step if c.text not in asides) for step in reading.steps)
     steps = tuple(step for step in kept if step)
     if not asides or not (steps or reading.denied):
@@ -37,5 +43,5 @@ def without_asides(reading: Reading, meant: Mapping[str, float]) -> Reading:
     return replace(reading, steps=steps, notes=(*reading.notes, *notes), plain=False)
 
 
-def _is_statement(words: str) -> bool:
-    return _STATES.match(words) is not None and not (begins_with_a_verb(words) or limbs_of(words))
+def _names_no_act(words: str) -> bool:
+    return not (begins_with_a_verb(words) or limbs_of(words))

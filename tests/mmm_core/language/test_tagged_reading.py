@@ -186,13 +186,22 @@ def test_what_is_no_command_is_left_out_beside_one_or_a_denial(
     steps: list[list[str]], denied: tuple[str, ...], kept: list[list[str]]
 ) -> None:
     given = _reading(steps, denied)
-    found = without_asides(given, {command.text: 0.2 for step in given.steps for command in step})
+    found = without_asides(given, {command.text: Meant("clap", 0.2) for step in given.steps for command in step})
     assert [[command.text for command in step] for step in found.steps] == kept
     assert len(found.notes) == sum(map(len, steps)) - sum(map(len, kept))
 
 
 def test_what_probably_means_a_gesture_is_no_aside() -> None:
     given = _reading([["the robot dance"], ["clap your hands"]])
-    assert without_asides(given, {"the robot dance": 0.95}) == given
+    assert without_asides(given, {"the robot dance": Meant("robot", 0.95)}) == given
     given = _reading([["your left side should sway"], ["clap your hands"]])
-    assert without_asides(given, {"your left side should sway": 0.6}) == given
+    assert without_asides(given, {"your left side should sway": Meant("sway", 0.6)}) == given
+
+
+def test_courtesy_beside_a_denial_is_no_command() -> None:
+    thanks = {"thanks very much": Meant(OUTSIDE, 0.95)}
+    assert without_asides(_reading([["thanks very much"]], ("salute",)), thanks).steps == ()
+    assert without_asides(_reading([["thanks very much"], ["clap"]]), thanks).steps
+    assert without_asides(
+        _reading([["thanks very much"]], ("salute",)), {"thanks very much": Meant(OUTSIDE, 0.8)}
+    ).steps
