@@ -33,6 +33,7 @@ from mmm_core.language.plain_gestures import (
 )
 from mmm_core.language.positions import in_said_order
 from mmm_core.language.reading import read
+from mmm_core.language.said_at_once import said_at_once, without_repeats
 from mmm_core.language.spelling import mended
 from mmm_core.language.sure_reading import is_sure, leaves_words_out, names_acts, needs_tags, unknown_commands
 from mmm_core.language.tagged_manner import manner_phrases, with_left_manner, with_likely_manner, with_plain_manner
@@ -113,6 +114,7 @@ class SentenceReader:
             found = self._in_plain_words(replace(self._divided(words, without_emoji, states), text=text), states)
         else:
             found = with_left_manner(by_rules, words, manner_phrases(words, self._tagged(states)[1]))
+        found = said_at_once(without_repeats(found))
         whole = states.meant
         outside = whole.probability if whole.name == OUTSIDE else 0.0
         return replace(without_denied_acts(with_likely_manner(found, whole.manners), whole), outside=outside)

@@ -77,7 +77,7 @@ def are_at_once(a: str, b: str, *, joined: bool = True) -> bool:
     "nod and clap" is at once as well; "nod, clap" and "clap and bow" are successive.
     """
     moved = limbs_of(a), limbs_of(b)
-    if not _apart(*moved):
+    if not are_apart(*moved):
         return False
     if set(moved) == {frozenset({"left_arm"}), frozenset({"right_arm"})} or not (
         _VERB_FIRST.match(a) and _VERB_FIRST.match(b)
@@ -91,7 +91,8 @@ def is_pose(clause: str) -> bool:
     return bool(_POSE.match(clause)) and not _NO_POSE.match(clause)
 
 
-def _apart(a: frozenset[str], b: frozenset[str]) -> bool:
+def are_apart(a: frozenset[str], b: frozenset[str]) -> bool:
+    """Whether two commands move different limbs, by the limbs that each names."""
     if not a or not b or a & b - SOME_ARM:
         return False
     return not (a == SOME_ARM == b) and not (a | b >= ARMS | SOME_ARM)
@@ -124,7 +125,7 @@ def divided(clause: str) -> list[str]:
                 if "hand" in clause
                 else [first, second]
             )
-        if not _apart(a, b):
+        if not are_apart(a, b):
             continue
         if not asked and a | b <= ARMS | SOME_ARM and not (limbs_named(first) and limbs_named(second)):
             continue  # "lift your right hand and swear an oath" is one gesture
@@ -165,7 +166,7 @@ def same_limbs(clause: str) -> list[str]:
     for pair, asked in _pairs(clause):
         first, second = (imperative(part) for part in pair)
         a, b = limbs_named(first), limbs_named(second)
-        if asked and a and b and (a & b or ARMS <= (a | b)) and not _apart(a, b):
+        if asked and a and b and (a & b or ARMS <= (a | b)) and not are_apart(a, b):
             return [first, second]
     return [clause]
 

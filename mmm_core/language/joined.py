@@ -13,6 +13,7 @@ from dataclasses import replace
 from mmm_core.language.commands import MOST_AT_ONCE, MOST_STEPS, PlainCommand, Reading, Steps
 from mmm_core.language.plain_gestures import SEVERAL, Meant, is_gesture
 from mmm_core.language.reading import command_of
+from mmm_core.language.word_tables import any_of
 
 SURE_OF_PART = 0.75
 """Least probability of the gesture that either part means."""
@@ -23,10 +24,7 @@ _JOINS = re.compile(
     r"(?P<and>and|but))(?: also)? |(?P<comma>[,;.:]+) "
 )
 _FRONTED = re.compile(r"(?:with|while|whilst|as) (?:you )?")
-_AT_ONCE = re.compile(
-    r"\b(?:same (?:time|moment|instant|move)|at once|together|in one (?:go|shot|move|motion)|simultaneous\w*|combo|in parallel|"
-    r"meanwhile)\b"
-)
+_AT_ONCE = re.compile(rf"\b(?:{any_of('at_once', 'said for all')}|together|combo)\b")
 _NEXT = re.compile(r"^(?:and |then |next(?: up)?|after that|now)[,:]? ")
 _FILLER = re.compile(
     r",? (?:(?:all |both )?(?:at|in) (?:the (?:very )?same|one|a single) (?:time|moment|instant|move|go|shot|motion)|"
