@@ -20,10 +20,9 @@ _STATES = re.compile(
 
 
 def without_asides(reading: Reading, meant: Mapping[str, Meant]) -> Reading:
-    """A reading without statements and other words beside commands or a denial: "he will feel at home", "thanks a lot".
+    """A reading without statements beside commands, and without what is surely no gesture beside a denial.
 
-    They are no phrase of the corpus, begin with no verb, name no limb, and mean no gesture: probably where they have the form of a
-    statement, else surely. `notes` names them.
+    Such words are no phrase of the corpus, begin with no verb, name no limb, and probably mean no gesture. `notes` names them.
 
     Args:
         reading: the reading.
@@ -34,7 +33,7 @@ def without_asides(reading: Reading, meant: Mapping[str, Meant]) -> Reading:
         for text, one in meant.items()
         if _names_no_act(text.lower())
         and not (is_gesture(one.name) and one.probability >= _MAY_BE_A_GESTURE)
-        and (_STATES.match(text.lower()) or is_surely_outside(one))
+        and (_STATES.match(text.lower()) or (reading.denied and is_surely_outside(one)))
     ]
     kept = tuple(tuple(c for c in step if c.text not in asides) for step in reading.steps)
     steps = tuple(step for step in kept if step)

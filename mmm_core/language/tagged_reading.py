@@ -84,10 +84,13 @@ def read_with_tags(by_rules: Reading, tags: Sequence[str], meanings: Meanings = 
     by_tags = without_unasked(said_plainly(_read_marked(by_rules.text, marked), meant), meant)
     if by_rules.denied and not by_tags.denied:  # what is denied must not be done
         return by_rules
+    if not by_rules.denied and _n_gestures(meant) > sum(map(len, by_rules.steps)):
+        return by_tags
     divides_alike = _shape(by_rules) == _shape(by_tags) and not (by_rules.denied and is_sure(by_tags))
     if names_acts(by_tags) and not divides_alike and not _splits_one(by_rules, by_tags, meanings.whole):
         return by_tags
-    by_rules = _with_plain_words(by_rules, marked, meant)
+    if divides_alike:
+        by_rules = _with_plain_words(by_rules, marked, meant)
     if _MAY_DENY.search(by_rules.text.lower()) or by_tags.denied or not _has_words_enough(by_tags):
         return by_rules
     is_better = meanings.how_likely(by_rules) < _LIKELY <= meanings.how_likely(by_tags)
@@ -112,6 +115,11 @@ def _with_plain_words(by_rules: Reading, marked: MarkedCommands, meant: Sequence
 def _splits_one(by_rules: Reading, by_tags: Reading, whole: Meant) -> bool:
     """Whether the tags alone divide a sentence that surely means one gesture."""
     return is_sure_of(whole) and _shape(by_rules)[0] == [1] != _shape(by_tags)[0]
+
+
+def _n_gestures(meant: Sequence[Meant]) -> int:
+    """Number of different gestures that commands surely mean in their sentence."""
+    return len({one.name for one in meant if is_sure_of(one)})
 
 
 def _has_words_enough(reading: Reading) -> bool:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import random
 import re
 from collections.abc import Sequence
-from typing import NamedTuple
 
 import numpy as np
 
@@ -27,14 +26,11 @@ from mmm_core.language.limbs import is_gesture_verb
 from mmm_core.language.plain_gestures import OUTSIDE, SEVERAL, gestures, plain_command
 from mmm_core.language.tagged_words import BEGINS, DENIED, NO_MANNER
 from mmm_core.language.tagged_words import OUTSIDE as NO_COMMAND
+from mmm_core.training.drawn_text import SHARES, Drawn, Shares
 from mmm_core.training.slips import slip
 
 SEED = 0
 """Seed of the texts that are built from patterns."""
-_SHARE_OUTSIDE, _SHARE_MARKED, _SHARE_MANNER, _SHARE_DENIAL, _SHARE_JOINED = 0.1, 0.08, 0.14, 0.1, 0.08
-"""Shares of texts that are no gesture, of marked sentences of several commands, of manner, of denials, and of joined gestures."""
-_SHARE_PARTS, _SHARE_JOINED_PARTS = 0.18, 0.5
-"""Share of commands in marked sentences, and of joined gestures of which one is asked for instead of "several"."""
 _SHARE_WRITTEN = 0.5
 """Share of texts in words of the writers; others are phrases of the corpus, or built from patterns where they are no gesture."""
 _SHARE_REQUESTED, _SHARE_ENDED, _SHARE_SLIPS, _SHARE_LOWER, _SHARE_PUNCTUATED = 0.12, 0.12, 0.1, 0.12, 0.24
@@ -54,29 +50,15 @@ _MARKS = (".", "!", "?")
 _SIDE = re.compile(r"\b(?:left|right|both|hands|arms)\b")
 
 
-class Drawn(NamedTuple):
-    """A text with what it asks for; None where that is not known.
+class Texts:
+    """Draws texts of all classes, each gesture equally often.
 
     Attributes:
-        text: the text.
-        name: the gesture of `part`, or the class of the whole text.
-        manners: tempos and sizes that the text names.
-        is_denied: whether it asks for no motion.
-        part: first character and end of the command that `name` is about; None for the whole text.
+        shares: shares of the kinds of texts.
     """
 
-    text: str
-    name: str | None
-    manners: frozenset[str] | None = None
-    is_denied: bool | None = None
-    part: tuple[int, int] | None = None
-
-
-class Texts:
-    """Draws texts of all classes, each gesture equally often."""
-
-    def __init__(self, rng: random.Random) -> None:
-        self._rng = rng
+    def __init__(self, rng: random.Random, shares: Shares = SHARES) -> None:
+        self._rng, self.shares = rng, shares
         self._written = load_written_phrases()
         self._corpus = {gesture: [p for _, p in plain_phrases(*_named(gesture))] for gesture in gestures()}
         self._built = [*OUTSIDE_TEXTS, *outside_texts(_N_OUTSIDE, np.random.default_rng(SEED))]
@@ -99,24 +81,26 @@ class Texts:
 
     def draw(self) -> Drawn:
         """A text with its class and its manners."""
-        rng, share = self._rng, self._rng.random()
-        if share < _SHARE_OUTSIDE:
-            return Drawn(rng.choice(WRITTEN_OUTSIDE if rng.random() < _SHARE_WRITTEN else self._built), OUTSIDE)
-        if share < _SHARE_OUTSIDE + _SHARE_MARKED:
-            return self._marked_sentence()
-        if share < _SHARE_OUTSIDE + _SHARE_MARKED + _SHARE_MANNER:
-            one = rng.choice(self._in_manner)
-            return Drawn(joined(one.words), None, frozenset(one.manners) - {NO_MANNER})
-        if share < _SHARE_OUTSIDE + _SHARE_MARKED + _SHARE_MANNER + _SHARE_DENIAL:
-            return self._denial()
-        if share < _SHARE_OUTSIDE + _SHARE_MARKED + _SHARE_MANNER + _SHARE_DENIAL + _SHARE_PARTS and self._parts:
-            return self._part()
-        one = self._gesture()
-        if share > 1 - _SHARE_JOINED:
-            other = self._gesture()
-            if other.name != one.name:
-                return _both(one, other, rng)
-        return one
+        rng, shares = self._rng, self.shares
+        kinds = (self._outside, self._marked_sentence, self._in_some_manner, self._denial, self._part, self._joined)
+        drawn = rng.random()
+        for kind, share in zip(kinds, shares, strict=False):
+            if drawn < share:
+                return kind()
+            drawn -= share
+        return self._gesture()
+
+    def _outside(self) -> Drawn:
+        rng = self._rng
+        return Drawn(rng.choice(WRITTEN_OUTSIDE if rng.random() < _SHARE_WRITTEN else self._built), OUTSIDE)
+
+    def _in_some_manner(self) -> Drawn:
+        one = self._rng.choice(self._in_manner)
+        return Drawn(joined(one.words), None, frozenset(one.manners) - {NO_MANNER})
+
+    def _joined(self) -> Drawn:
+        one, other = self._gesture(), self._gesture()
+        return one if one.name == other.name else _both(one, other, self._rng, self.shares.joined_parts)
 
     def _part(self) -> Drawn:
         """A command of a marked sentence."""
@@ -217,7 +201,7 @@ def _phrases_of_manner(one: TaggedSentence) -> list[tuple[str, str]]:
     return [(joined(words), manner) for manner, words in phrases.items() if len(words) in _N_WORDS_BESIDE]
 
 
-def _both(one: Drawn, other: Drawn, rng: random.Random) -> Drawn:
+def _both(one: Drawn, other: Drawn, rng: random.Random, share_of_parts: float) -> Drawn:
     """Two gestures joined to one text: several gestures, or a part of the text with its gesture."""
     first, second = one.text.rstrip("".join(_MARKS)), other.text[0].lower() + other.text[1:]
     if rng.random() < _SHARE_GERUND and second.partition(" ")[0].isalpha():
@@ -225,7 +209,7 @@ def _both(one: Drawn, other: Drawn, rng: random.Random) -> Drawn:
     else:
         join = rng.choice(_JOINS)
     said = first + join + second
-    if rng.random() >= _SHARE_JOINED_PARTS:
+    if rng.random() >= share_of_parts:
         return Drawn(said, SEVERAL, None, is_denied=False)
     if rng.random() < _HALF:
         return Drawn(said, one.name, None, is_denied=False, part=(0, len(first)))

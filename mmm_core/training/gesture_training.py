@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import random
 from collections.abc import Callable, Iterator, Sequence
+from functools import partial
 from pathlib import Path
 
 import torch
@@ -16,12 +17,15 @@ from mmm_core.language.plain_gestures import OUTSIDE, SEVERAL, gestures
 from mmm_core.language.tagged_words import MANNERS
 from mmm_core.model.gesture_classifier import ClassifierConfig, GestureClassifier
 from mmm_core.model.text import MiniLm
-from mmm_core.training.gesture_texts import Drawn, Texts
+from mmm_core.training.drawn_text import SETTLING_SHARES, Drawn
+from mmm_core.training.gesture_texts import Texts
 from mmm_core.training.own_layers import Rates, copy_layers, fit
 
 STEPS, BATCH, TOGETHER = 3000, 64, 8
 """Optimisation steps, texts of a batch, and batches that are drawn together, so that each holds texts of similar length."""
-RATES = Rates(layers=2e-4, linear=2e-3, warm_up=50)
+SETTLING_STEPS = 500
+"""Steps after `STEPS` at smaller rates, with the shares of texts of `SETTLING_SHARES`."""
+RATES, SETTLING_RATES = Rates(layers=2e-4, linear=2e-3, warm_up=50), Rates(layers=1e-4, linear=1e-3, warm_up=20)
 DROPOUT, SMOOTHING = 0.1, 0.05
 SEED = 0
 
@@ -35,21 +39,32 @@ def train_classifier(
 
     Args:
         out: file of the classifier.
-        draw: draws a text and its class; phrases of all gestures and other texts when None.
+        draw: draws a text and its class; phrases of all gestures and other texts, which settle in the end, when None.
         classes: all classes that `draw` gives.
-        steps: optimisation steps.
+        steps: optimisation steps, without those of settling.
     """
     encoder = load_text_encoder()
-    if draw is None:
-        draw, classes = Texts(random.Random(SEED)).draw, (*gestures(), OUTSIDE, SEVERAL)
+    stages = [(draw, RATES, steps)] if draw is not None else _stages(steps)
+    classes = classes or (*gestures(), OUTSIDE, SEVERAL)
     with torch.random.fork_rng(devices=[]):
         torch.manual_seed(SEED)
         classifier = GestureClassifier(ClassifierConfig(tuple(classes), MANNERS[1:]), encoder.config)
         copy_layers(classifier.layers, encoder, classifier.config.n_shared)
-        batches = _batches(draw)
-        fit(classifier, classifier.layers, lambda _step: _loss(classifier, encoder, next(batches)), RATES, steps)
+        for draws, rates, n_steps in stages:
+            batches = _batches(draws)
+            fit(classifier, classifier.layers, partial(_next_loss, classifier, encoder, batches), rates, n_steps)
     save_classifier(out, classifier)
     return classifier
+
+
+def _stages(steps: int) -> list[tuple[Draw, Rates, int]]:
+    """Texts, rates and steps of the training, and of its end."""
+    first, last = Texts(random.Random(SEED)), Texts(random.Random(SEED + 1), SETTLING_SHARES)
+    return [(first.draw, RATES, steps), (last.draw, SETTLING_RATES, SETTLING_STEPS)]
+
+
+def _next_loss(classifier: GestureClassifier, encoder: MiniLm, batches: Iterator[list[Drawn]], _step: int) -> Tensor:
+    return _loss(classifier, encoder, next(batches))
 
 
 def _loss(classifier: GestureClassifier, encoder: MiniLm, batch: Sequence[Drawn]) -> Tensor:

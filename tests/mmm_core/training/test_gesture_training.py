@@ -18,7 +18,8 @@ from mmm_core.inference.own_layers_file import load_classifier
 from mmm_core.language.plain_gestures import OUTSIDE, SEVERAL, gestures
 from mmm_core.model.gesture_classifier import meant_by, meant_by_parts
 from mmm_core.model.sentence_tagger import pieces_of, word_states
-from mmm_core.training.gesture_texts import Drawn, Texts
+from mmm_core.training.drawn_text import SETTLING_SHARES, SHARES, Drawn
+from mmm_core.training.gesture_texts import Texts
 from mmm_core.training.gesture_training import Draw, train_classifier
 
 GIVEN = (
@@ -79,6 +80,13 @@ def test_parts_of_texts_are_commands_in_them_and_denied_acts_are_no_gesture() ->
     said = [one.text[slice(*one.part)] for one in parts if one.part is not None]
     assert len(parts) > 700 and all(words and words == words.strip() for words in said)
     assert sum(one.name == OUTSIDE for one in parts) > 100 and len({one.name for one in parts}) > 150
+
+
+def test_shares_leave_single_gestures_room() -> None:
+    for shares in (SHARES, SETTLING_SHARES):
+        assert 0.3 < 1 - sum(shares[:-1]) < 0.6
+    texts = Texts(random.Random(3), SETTLING_SHARES._replace(outside=1.0))
+    assert {texts.draw().name for _ in range(20)} == {OUTSIDE}
 
 
 def test_a_classifier_of_another_text_encoder_is_refused(tmp_path: Path) -> None:

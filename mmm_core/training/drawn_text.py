@@ -1,0 +1,50 @@
+"""A text that the gesture classifier learns from, and how often each kind of text is drawn."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+
+class Drawn(NamedTuple):
+    """A text with what it asks for; None where that is not known.
+
+    Attributes:
+        text: the text.
+        name: the gesture of `part`, or the class of the whole text.
+        manners: tempos and sizes that the text names.
+        is_denied: whether it asks for no motion.
+        part: first character and end of the command that `name` is about; None for the whole text.
+    """
+
+    text: str
+    name: str | None
+    manners: frozenset[str] | None = None
+    is_denied: bool | None = None
+    part: tuple[int, int] | None = None
+
+
+class Shares(NamedTuple):
+    """Shares of the kinds of texts that are drawn; all others are single gestures.
+
+    Attributes:
+        outside: texts that are no gesture.
+        marked: marked sentences of several commands.
+        manner: sentences with marked manner.
+        denial: sentences with a negative word.
+        parts: commands of marked sentences.
+        joined: two gestures joined to one text.
+        joined_parts: share of the joined texts that ask for one of both gestures instead of "several".
+    """
+
+    outside: float
+    marked: float
+    manner: float
+    denial: float
+    parts: float
+    joined: float
+    joined_parts: float
+
+
+SHARES = Shares(0.1, 0.08, 0.14, 0.1, 0.18, 0.08, 0.5)
+SETTLING_SHARES = Shares(0.09, 0.12, 0.1, 0.08, 0.1, 0.06, 0.3)
+"""Shares of the end of a training: more single gestures and more sentences of several commands."""
