@@ -1,6 +1,6 @@
 """Whether a motion meets what is expected of a gesture's limb, arm and direction, each judged as the gesture's family shows it.
 
-The corpus's own performance of every gesture meets all of them (`tests/mmm_core/recognition/test_expected.py`).
+The corpus's own performance of every gesture meets all of them (`tests/mmm_core/evaluation/test_expected_by_corpus.py`).
 """
 
 from __future__ import annotations
