@@ -52,6 +52,6 @@ def test_a_sentence_with_one_command_that_cannot_be_seen_expects_no_order() -> N
     assert {"side", "denial"} <= found["do not clap, wave"]
 
 
-def test_a_gesture_with_the_sign_of_what_is_denied_expects_no_denial(of_a_person: dict[str, frozenset[str]]) -> None:
+def test_a_sign_of_what_is_denied_expects_no_denial(of_a_person: dict[str, frozenset[str]]) -> None:
     assert "denial" in of_a_person["do not clap, wave"]
     assert "denial" not in of_a_person["do not wave me off, beckon"]

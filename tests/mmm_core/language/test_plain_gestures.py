@@ -104,7 +104,7 @@ def test_a_sentence_that_asks_for_nothing_has_no_commands() -> None:
         ("now clap, bow", 0.95, ["clap", "bow"], ()),
     ],
 )
-def test_what_a_sentence_that_may_deny_surely_does_not_ask_for_is_denied(
+def test_what_a_denying_sentence_does_not_ask_for_is_denied(
     said: str, probability: float, steps: list[str], denied: tuple[str, ...]
 ) -> None:
     given = Reading(said, ((PlainCommand("clap"),), (PlainCommand("bow"),)))

@@ -121,7 +121,7 @@ def test_what_a_command_means_in_its_sentence(
     assert found.denied == denied
 
 
-def test_a_sentence_that_surely_means_one_gesture_is_not_divided_by_tags_alone() -> None:
+def test_tags_alone_do_not_divide_what_surely_is_one_gesture() -> None:
     sentence, tags = read_marked("[1 Hammer the nail in], [2 pull that face] when you do")
     by_rules = Reading(sentence, ((PlainCommand("hammer the nail in"),),))
     assert len(read_with_tags(by_rules, tags).steps) == 2
@@ -198,7 +198,7 @@ def test_what_probably_means_a_gesture_is_no_aside() -> None:
     assert without_asides(given, {"your left side should sway": Meant("sway", 0.6)}) == given
 
 
-def test_what_is_surely_no_gesture_beside_a_denial_is_no_command() -> None:
+def test_what_is_no_gesture_beside_a_denial_is_no_command() -> None:
     thanks = {"thanks very much": Meant(OUTSIDE, 0.95)}
     assert without_asides(_reading([["thanks very much"]], ("salute",)), thanks).steps == ()
     assert len(without_asides(_reading([["thanks very much"], ["clap"]]), thanks).steps) == 2, "the scope says so"

@@ -74,7 +74,7 @@ def test_texts_of_every_class_are_drawn_and_none_keeps_a_slot() -> None:
     assert not [one.text for one in drawn if re.search(r"\{[SDNnv]\}", one.text) or not one.text.strip()]
 
 
-def test_parts_of_texts_are_commands_in_them_and_denied_acts_are_no_gesture() -> None:
+def test_parts_are_commands_and_denied_acts_are_no_gesture() -> None:
     texts = Texts(random.Random(2))
     parts = [one for one in (texts.draw() for _ in range(4000)) if one.part is not None]
     said = [one.text[slice(*one.part)] for one in parts if one.part is not None]
