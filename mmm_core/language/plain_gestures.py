@@ -137,9 +137,9 @@ def said_plainly(reading: Reading, meant: Sequence[Meant]) -> Reading:
         reading: the sentence as it was read. Phrases of the corpus are left as they are.
         meant: what each of its commands means in the sentence, in order; none where that is not known.
     """
-    of_commands = iter(meant)
     if not meant:
         return reading
+    of_commands = iter(meant)
     return replace(
         reading, steps=tuple(tuple(in_plain_words_of(c, next(of_commands)) for c in s) for s in reading.steps)
     )
@@ -160,16 +160,9 @@ def without_unasked(reading: Reading, meant: Sequence[Meant]) -> Reading:
     if not meant or _MAY_DENY.search(reading.text.lower()) is None:
         return reading
     of_commands = iter(meant)
-    is_asked = [[not is_surely_outside(next(of_commands)) for _ in step] for step in reading.steps]
-    denied = [
-        c.text
-        for s, asked in zip(reading.steps, is_asked, strict=True)
-        for c, ok in zip(s, asked, strict=True)
-        if not ok
-    ]
-    kept = (
-        tuple(c for c, ok in zip(s, asked, strict=True) if ok) for s, asked in zip(reading.steps, is_asked, strict=True)
-    )
+    steps = [[(command, not is_surely_outside(next(of_commands))) for command in step] for step in reading.steps]
+    denied = [command.text for step in steps for command, is_asked in step if not is_asked]
+    kept = (tuple(command for command, is_asked in step if is_asked) for step in steps)
     return replace(reading, steps=tuple(filter(None, kept)), denied=(*reading.denied, *denied)) if denied else reading
 
 

@@ -38,14 +38,14 @@ def said_at_once(reading: Reading) -> Reading:
 
 
 def without_repeats(reading: Reading) -> Reading:
-    """A reading without a command that its neighbour says already: "salute, hand to the brow" is one salute."""
+    """A reading that has each command once, if the sentence names it twice in other words: "a salute, hand at the brow"."""
     if _AGAIN.search(reading.text):
         return reading
     flat = [command for step in reading.steps for command in step]
     repeated = {
         id(other)
         for one, other in combinations(flat, 2)
-        if one is not other and _says_again(one, other) and not _is_named_twice(one, reading.text)
+        if _says_again(one, other) and not _is_named_twice(one, reading.text)
     }
     if not repeated:
         return reading
@@ -54,7 +54,9 @@ def without_repeats(reading: Reading) -> Reading:
 
 
 def _says_again(one: PlainCommand, other: PlainCommand) -> bool:
-    """Whether a command has the words of another one, apart from an arm that only one of them names."""
+    """Whether a command has words and manner of another one, apart from an arm that only one of them names."""
+    if one.manner != other.manner:
+        return False
     names_none = any(_ARM.search(command.text) is None for command in (one, other))
     return one.text == other.text or (names_none and _ARM.sub("", one.text) == _ARM.sub("", other.text))
 

@@ -55,7 +55,7 @@ _ALL = re.compile(r"^(?:all(?: of (?:it|them|that))?|both|everything|each)\b ?")
 
 @dataclass(frozen=True)
 class Meanings:
-    """What the words of a sentence mean to a classifier; without one the rules are believed.
+    """What a classifier takes the words of a sentence to mean. The defaults are those of a reader without a classifier.
 
     Attributes:
         how_likely: the least probability with which a command of a reading is a gesture.

@@ -1,4 +1,4 @@
-"""What the corpus performs meets what is expected of it: each gesture by itself, and two of them in turn, in that order alone."""
+"""The corpus's own performances meet the expectations by which motions are judged: each gesture alone, and two gestures in turn."""
 
 from __future__ import annotations
 

@@ -6,6 +6,7 @@ import pytest
 
 from mmm_core.language.commands import PlainCommand, Reading
 from mmm_core.language.limbs import limbs_of
+from mmm_core.language.manner import Manner
 from mmm_core.language.said_at_once import said_at_once, without_repeats
 
 
@@ -59,3 +60,8 @@ def test_a_command_that_is_named_twice_is_done_once(
     text: str, steps: tuple[tuple[str, ...], ...], kept: list[list[str]]
 ) -> None:
     assert _shown(without_repeats(_reading(text, *steps))) == kept
+
+
+def test_a_command_in_another_manner_is_another_one() -> None:
+    given = Reading("shrug slowly, later fast", tuple((PlainCommand("shrug", Manner(tempo=t)),) for t in (0.62, 1.6)))
+    assert without_repeats(given) == given
