@@ -45,6 +45,6 @@ class Shares(NamedTuple):
     joined_parts: float
 
 
-SHARES = Shares(0.1, 0.08, 0.14, 0.1, 0.18, 0.08, 0.5)
-SETTLING_SHARES = Shares(0.09, 0.12, 0.1, 0.08, 0.1, 0.06, 0.3)
+SHARES = Shares(0.1, 0.09, 0.1, 0.08, 0.1, 0.06, 0.4)
+SETTLING_SHARES = Shares(0.09, 0.12, 0.08, 0.07, 0.07, 0.05, 0.3)
 """Shares of the end of a training: more single gestures and more sentences of several commands."""
