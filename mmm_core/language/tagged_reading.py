@@ -55,7 +55,7 @@ _ALL = re.compile(r"^(?:all(?: of (?:it|them|that))?|both|everything|each)\b ?")
 
 @dataclass(frozen=True)
 class Meanings:
-    """What a classifier takes the words of a sentence to mean. The defaults are those of a reader without a classifier.
+    """What a classifier understands by the words of a sentence. A reader without a classifier uses the defaults.
 
     Attributes:
         how_likely: the least probability with which a command of a reading is a gesture.

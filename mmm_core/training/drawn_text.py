@@ -45,6 +45,6 @@ class Shares(NamedTuple):
     joined_parts: float
 
 
-SHARES = Shares(0.1, 0.09, 0.1, 0.08, 0.1, 0.06, 0.4)
-SETTLING_SHARES = Shares(0.09, 0.12, 0.08, 0.07, 0.07, 0.05, 0.3)
+SHARES = Shares(outside=0.1, marked=0.09, manner=0.1, denial=0.08, parts=0.1, joined=0.06, joined_parts=0.4)
+SETTLING_SHARES = Shares(outside=0.09, marked=0.12, manner=0.08, denial=0.07, parts=0.07, joined=0.05, joined_parts=0.3)
 """Shares of the end of a training: more single gestures and more sentences of several commands."""
