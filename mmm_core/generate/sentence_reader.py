@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import partial
+from itertools import chain
 
 import numpy as np
 import torch
@@ -18,7 +18,9 @@ from mmm_core.inference.checkpoint import load_text_encoder
 from mmm_core.inference.onednn_linear import Packing, pack
 from mmm_core.inference.own_layers_file import load_classifier, load_tagger
 from mmm_core.language.asides import without_asides
+from mmm_core.language.candidates import Candidate, Ways, chosen, commands_of, in_sentence, merged
 from mmm_core.language.commands import Reading
+from mmm_core.language.denial import surely_denies
 from mmm_core.language.hard_phrases import without_hard_phrases
 from mmm_core.language.joined import with_parted_commands
 from mmm_core.language.mirroring import canonical, mirror_words
@@ -26,8 +28,6 @@ from mmm_core.language.plain_gestures import (
     OUTSIDE,
     Meant,
     in_plain_words,
-    is_gesture,
-    is_lost,
     is_sure_of,
     without_denied_acts,
 )
@@ -35,15 +35,17 @@ from mmm_core.language.positions import in_said_order
 from mmm_core.language.reading import read
 from mmm_core.language.said_at_once import said_at_once, without_repeats
 from mmm_core.language.spelling import mended
-from mmm_core.language.sure_reading import is_sure, leaves_words_out, names_acts, needs_tags, unknown_commands
+from mmm_core.language.sure_reading import leaves_words_out, needs_tags, unknown_commands
 from mmm_core.language.tagged_manner import manner_phrases, with_left_manner, with_likely_manner, with_plain_manner
-from mmm_core.language.tagged_reading import Meanings, read_with_tags
-from mmm_core.language.tagged_words import MarkedCommands, likeliest_tags, words_of
+from mmm_core.language.tagged_reading import can_be_read, read_marked, without_splits
+from mmm_core.language.tagged_words import MarkedCommands, likely_tags, marked_commands, words_of
 from mmm_core.language.word_tables import REMEMBERED
 from mmm_core.model.gesture_classifier import GestureClassifier, meant_by, meant_by_parts, meant_by_states
 from mmm_core.model.sentence_tagger import SentenceTagger, WordStates, log_probability, pieces_of, word_states
 from mmm_core.model.text import MAX_WORD_PIECES, MiniLm, strip_emoji
 
+_DIVISIONS = 16
+"""Sequences of tags that are looked at, at most."""
 _FIRST_SENTENCE = "nod, and once you have done that, wave to the people who are waiting"
 """A sentence for the tagger, read when it is loaded: the first one takes several times as long as the others."""
 
@@ -100,56 +102,85 @@ class SentenceReader:
 
     def _read(self, text: str) -> Reading:
         by_rules = read(text)
-        if by_rules.text != text or not (needs_tags(by_rules) or leaves_words_out(by_rules)):
-            return by_rules
-        words = _in_order(strip_emoji(text))
-        without_emoji = read(words)
-        if not 0 < len(words_of(words)) <= MAX_WORD_PIECES:
-            return by_rules
-        divides = needs_tags(without_emoji)
-        if not divides and not leaves_words_out(by_rules):
+        words = self._words_to_understand(by_rules, text)
+        if not words:
             return by_rules
         states = self._states(words)
-        if divides:
-            found = self._in_plain_words(replace(self._divided(words, without_emoji, states), text=text), states)
+        if ways := self._ways(text, words, states):
+            found = chosen(ways)
+        elif leaves_words_out(by_rules):
+            phrases = manner_phrases(words, self._tagged(states)[1])
+            found = said_at_once(without_repeats(with_left_manner(by_rules, words, phrases)))
         else:
-            found = with_left_manner(by_rules, words, manner_phrases(words, self._tagged(states)[1]))
-        found = said_at_once(without_repeats(found))
+            return by_rules
         whole = states.meant
         outside = whole.probability if whole.name == OUTSIDE else 0.0
         return replace(without_denied_acts(with_likely_manner(found, whole.manners), whole), outside=outside)
 
-    def _divided(self, words: str, by_rules: Reading, states: _Encoded) -> Reading:
-        """The sentence with its words of manner understood, divided into commands."""
+    def ways_to_read(self, text: str) -> Ways | None:
+        """The ways to read a text among which one is chosen; None where the rules are sure or no way is known."""
+        words = self._words_to_understand(read(text), text)
+        return self._ways(text, words, self._states(words)) if words else None
+
+    def _words_to_understand(self, by_rules: Reading, text: str) -> str:
+        """The words of a text with which tagger and classifier help; empty where they do not."""
+        if by_rules.text != text or not (needs_tags(by_rules) or leaves_words_out(by_rules)):
+            return ""
+        words = _in_order(strip_emoji(text))
+        return words if 0 < len(words_of(words)) <= MAX_WORD_PIECES else ""
+
+    def _ways(self, text: str, words: str, states: _Encoded) -> Ways | None:
+        """The ways to read the words of a text, by the rules and by tags, also with its manner in plain words."""
+        by_rules = read(words)
+        if not needs_tags(by_rules) or (not by_rules.steps and surely_denies(words)):
+            return None
         tags, manners = self._tagged(states)
         phrases = manner_phrases(words, manners)
-        divided = self._in_plain_manner(words, by_rules, states, tags, with_plain_manner(words, phrases))
-        return with_left_manner(divided, words, phrases) if phrases else divided
-
-    def _in_plain_manner(self, words: str, by_rules: Reading, states: _Encoded, tags: list[str], plain: str) -> Reading:
-        """The sentence divided, in its plain manner (`with_plain_manner`) unless that loses an act."""
-        if plain != words:
-            in_plain, states_of_plain = read(plain), self._states(plain)
-            loses_an_act = names_acts(by_rules) and not names_acts(in_plain)
-            if not loses_an_act and not is_lost(states.meant, states_of_plain.meant):
-                of_plain = self._tagged(states_of_plain)[0]
-                return in_plain if is_sure(in_plain) else self._by_tags(in_plain, of_plain, states_of_plain)
-        return by_rules if is_sure(by_rules) else self._by_tags(by_rules, tags, states)
-
-    def _by_tags(self, by_rules: Reading, tags: list[str], states: _Encoded) -> Reading:
-        return read_with_tags(
-            by_rules, tags, Meanings(self._how_likely, partial(self._meant_in_sentence, states), states.meant)
+        found: list[Candidate] = []
+        plain = with_plain_manner(words, phrases)
+        if plain != words and 0 < len(words_of(plain)) <= MAX_WORD_PIECES:
+            of_plain = self._states(plain)
+            found += [
+                replace(one, by_rules=False) for one in self._candidates(plain, of_plain, self._tagged(of_plain)[0])
+            ]
+        found += self._candidates(words, states, tags)
+        if by_rules.denied:  # what is denied must not be done
+            found = [one for one in found if one.reading.denied]
+        readings = [replace(one.reading, text=text) for one in found]
+        self._classes(list(dict.fromkeys(chain.from_iterable(map(unknown_commands, readings)))))  # all in one pass
+        finished = [self._in_plain_words(with_left_manner(one, words, phrases), states) for one in readings]
+        candidates = merged(
+            replace(one, reading=said_at_once(without_repeats(reading)))
+            for one, reading in zip(found, finished, strict=True)
         )
+        return Ways(candidates, self._classes(commands_of(candidates)), states.meant)
 
-    def _meant_in_sentence(self, states: _Encoded, marked: MarkedCommands) -> list[Meant]:
-        parts = pieces_of(states.words, marked.numbers)
+    def _candidates(self, words: str, states: _Encoded, tags: NDArray[np.float32]) -> list[Candidate]:
+        """The ways to read words by the rules and by the tags of which these have the logarithms of the probabilities."""
+        divisions: dict[MarkedCommands, float] = {}
+        for sequence, log in likely_tags(tags, _DIVISIONS):
+            marked = marked_commands(words, without_splits(words, sequence))
+            if can_be_read(marked):
+                divisions.setdefault(marked, log)
+        meant = self._meant_in_sentence(states, list(divisions))
+        best = max(divisions.values(), default=0.0)
+        return [
+            Candidate(read(words), by_rules=True),
+            *(
+                Candidate(read_marked(words, marked, means), False, log == best, in_sentence(means), log - best)
+                for (marked, log), means in zip(divisions.items(), meant, strict=True)
+            ),
+        ]
+
+    def _meant_in_sentence(self, states: _Encoded, divisions: Sequence[MarkedCommands]) -> list[list[Meant]]:
+        """The gestures that the commands of each division mean in their sentence."""
+        numbers = list(dict.fromkeys(chain.from_iterable(marked.numbers for marked in divisions)))
+        if not numbers:
+            return [[] for _ in divisions]
+        parts = pieces_of(states.words, numbers)
         found = [Meant(*one) for one in meant_by_parts(self._classifier, states.words.states, parts)]
-        return list(map(_seen_in_mirror, found)) if states.is_image else found
-
-    def _how_likely(self, reading: Reading) -> float:
-        """The least probability with which a command of a reading is a gesture; 1 for phrases of the corpus."""
-        classes = self._classes(unknown_commands(reading)).values()
-        return min((one.probability if is_gesture(one.name) else 0.0 for one in classes), default=1.0)
+        by_numbers = dict(zip(numbers, map(_seen_in_mirror, found) if states.is_image else found, strict=True))
+        return [[by_numbers[one] for one in marked.numbers] for marked in divisions]
 
     def _in_plain_words(self, found: Reading, states: _Encoded) -> Reading:
         """The reading in plain words where it is likely which gestures are meant."""
@@ -187,10 +218,10 @@ class SentenceReader:
         meant = Meant(*meant_by_states(self._classifier, states.states[None], mask)[0])
         return _Encoded(states, _seen_in_mirror(meant) if is_image else meant, is_image)
 
-    def _tagged(self, states: _Encoded) -> tuple[list[str], NDArray[np.float32]]:
-        """The likeliest tags of a sentence's words, and the (N, 5) log-probabilities of their manners."""
+    def _tagged(self, states: _Encoded) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
+        """The (N, 8) log-probabilities of the tags of a sentence's words, and the (N, 5) ones of their manners."""
         tags, manners = log_probability(self._tagger, states.words)
-        return likeliest_tags(tags.numpy()), manners.numpy()
+        return tags.numpy(), manners.numpy()
 
 
 def _in_order(words: str) -> str:

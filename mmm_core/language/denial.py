@@ -203,6 +203,11 @@ def _note(denied: list[str], what: str) -> str:
     return ""
 
 
+def surely_denies(text: str) -> bool:
+    """Whether a text begins with words that deny all that follows: "under no circumstances"."""
+    return forms.SURELY_DENIES.match(text.lower()) is not None
+
+
 def _is_act(what: str) -> bool:
     named = SPEAKS_OF_AN_ACT.search(what) or forms.ACTS_ALSO.search(what) or everyday(what) or is_known_phrase(what)
     return bool(named or is_gesture_verb(base_of(what.partition(" ")[0])))

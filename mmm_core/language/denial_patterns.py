@@ -106,7 +106,7 @@ ANY_ARM_BUT = re.compile(
     r"(?:(?:so|as|just as) long as it is not|but|except|other than) (?:the|your) (?P<side>left|right)(?: one| hand| arm)?"
 )
 SURELY_DENIES = re.compile(
-    r"^\W*(?:\w+,? )?(?:(?:nobody|no one|none of us)(?:'s)? (?:asked|asks|wants|needs|likes)|never ever|do not you dare|cancel|abort|call off|quit|"
+    r"^\W*(?:\w+,? )?(?:(?:nobody|no one|none of us)(?:'s)? (?:asked|asks|wants|needs|likes)|never ever|do not you dare|under no circumstances|on no account|in no case|by no means|cancel|abort|call off|quit|"
     r"no (?:\w+ ){1,2}(?:tonight|today|this time|now|anymore|any more)(?=$|[,.;]))"
 )
 """Words after which even what is no known act is not to be done."""

@@ -39,7 +39,7 @@ def said_at_once(reading: Reading) -> Reading:
 
 def without_repeats(reading: Reading) -> Reading:
     """A reading that has each command once, if the sentence names it twice in other words: "a salute, hand at the brow"."""
-    if _AGAIN.search(reading.text):
+    if asks_again(reading.text):
         return reading
     flat = [command for step in reading.steps for command in step]
     repeated = {
@@ -51,6 +51,11 @@ def without_repeats(reading: Reading) -> Reading:
         return reading
     kept = (tuple(command for command in step if id(command) not in repeated) for step in reading.steps)
     return replace(reading, steps=tuple(filter(None, kept)), plain=False)
+
+
+def asks_again(text: str) -> bool:
+    """Whether a text has words for doing something more than once."""
+    return _AGAIN.search(text) is not None
 
 
 def _says_again(one: PlainCommand, other: PlainCommand) -> bool:

@@ -35,6 +35,8 @@ _LONGEST_SURE = 9
 _DENIES_TWO = re.compile(r"\b(?:or|nor|and no)\b")
 _LONGEST_DENIED = 6
 """Words of a denied act, at most, in which no command is sought."""
+_MOST_BESIDE_DENIED = 6
+"""Words beside the denied acts, at most, in which no command is sought."""
 _COMPARES = re.compile(r"\b(?:as if|as though|like)\b")
 _MOST_LEFT_OUT = 4
 """Words that a sentence has beyond those of its command, at most, without being looked at for words of manner."""
@@ -47,8 +49,10 @@ def is_sure(reading: Reading) -> bool:
     """
     commands = [command.text.lower() for step in reading.steps for command in step]
     if not commands:
-        return bool(reading.denied) and all(
-            len(what.split()) <= _LONGEST_DENIED or _DENIES_TWO.search(what) for what in reading.denied
+        others = len(reading.text.split()) - sum(len(what.split()) for what in reading.denied)
+        return bool(reading.denied) and (
+            (others <= _MOST_BESIDE_DENIED and all(len(what.split()) <= _LONGEST_DENIED for what in reading.denied))
+            or any(map(_DENIES_TWO.search, reading.denied))
         )
     if len(commands) == 1 and _IS_CAPTION.match(commands[0]):
         return True

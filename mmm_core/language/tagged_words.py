@@ -50,24 +50,48 @@ def words_of(sentence: str) -> list[tuple[int, int]]:
     return [(m.start(), m.end()) for m in _WORD.finditer(sentence)]
 
 
-def likeliest_tags(log_probability: NDArray[np.float32]) -> list[str]:
-    """The likeliest tags in which a word inside a command follows another word of that command (Viterbi).
+def likely_tags(log_probability: NDArray[np.float32], n: int) -> list[tuple[list[str], float]]:
+    """The n likeliest sequences of tags in which a word inside a command follows another word of that command (list Viterbi).
 
     Args:
         log_probability: (N, 8) log-probability of each of `TAGS` for each of N words.
+        n: number of sequences, at most.
+
+    Returns:
+        Each sequence with the logarithm of its probability, the likeliest first.
     """
-    best = log_probability[0].astype(np.float64)
-    best[_INSIDE] = -np.inf
+    scores = np.full((len(TAGS), 1), -np.inf)
+    scores[:, 0] = log_probability[0]
+    scores[_INSIDE] = -np.inf
     came_from: list[NDArray[np.intp]] = []
     for row in log_probability[1:]:
-        before = np.full(len(TAGS), int(best.argmax()))
-        before[_INSIDE] = int(np.where(_MAY_BE_INSIDE, best, -np.inf).argmax())
-        best = best[before] + row
-        came_from.append(before)
-    path = [int(best.argmax())]
-    for before in reversed(came_from):
-        path.append(int(before[path[-1]]))
-    return [TAGS[i] for i in reversed(path)]
+        n_each = scores.shape[1]
+        any_before = _largest(scores.ravel(), n)
+        allowed = np.where(_MAY_BE_INSIDE[:, None], scores, -np.inf)
+        before = np.tile(any_before, (len(TAGS), 1))
+        before[_INSIDE] = _largest(allowed.ravel(), n)
+        scores_before = np.where(
+            np.arange(len(TAGS))[:, None] == _INSIDE, allowed.ravel()[before], scores.ravel()[before]
+        )
+        came_from.append(np.stack([before // n_each, before % n_each]))
+        scores = scores_before + row[:, None]
+    found: list[tuple[list[str], float]] = []
+    for at in _largest(scores.ravel(), n):
+        score = scores.ravel()[at]
+        if score == -np.inf:
+            break
+        tag, rank = divmod(int(at), scores.shape[1])
+        path = [tag]
+        for tags, ranks in reversed(came_from):
+            tag, rank = int(tags[tag, rank]), int(ranks[tag, rank])
+            path.append(tag)
+        found.append(([TAGS[i] for i in reversed(path)], float(score)))
+    return found
+
+
+def _largest(values: NDArray[np.float64], n: int) -> NDArray[np.intp]:
+    """The indices of the n largest values, the largest first."""
+    return np.argsort(-values, kind="stable")[:n]
 
 
 def marked_commands(sentence: str, tags: Sequence[str]) -> MarkedCommands:

@@ -1,0 +1,210 @@
+"""The ways to read one sentence, and which of them is meant.
+
+Rules read a sentence in one way, a tagger divides it in several, some more likely than others. A candidate is one of these readings
+with what speaks for it. The weights of the evidence are in `words/choice.txt`; `mmmd train choice` finds them.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections import defaultdict
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cache
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mmm_core.language.commands import Reading
+from mmm_core.language.plain_gestures import SURE, Meant, is_gesture
+from mmm_core.language.said_at_once import asks_again
+from mmm_core.language.sure_reading import is_sure, unknown_commands
+from mmm_core.language.word_tables import pairs
+
+EVIDENCE = (
+    "by rules",  # the rules read the sentence so
+    "by rules, surely",  # and are sure of it
+    "likeliest tags",  # the tagger's likeliest division
+    "sum",  # sum, mean and least of the logarithms of the probabilities that its commands are gestures
+    "mean",
+    "least",
+    "least in sentence",  # the same least one, of the words within their sentence
+    "unsure",  # number of commands that are probably no gesture
+    "unlikely",  # sum over its gestures of the probability of the divisions that lack them
+    "repeated",  # number of gestures that it has more than once, though the sentence has no word for that
+    "against one",  # probability that the sentence is one gesture, if the reading has several
+    "at once",  # whether it has several commands in one step only
+    "at once, said",  # and the sentence has words for that
+    "one limb twice",  # and these have fewer limbs than commands
+    "in turn, said",  # whether it has several steps, and the sentence has words for that
+    "nothing",  # whether it has no command
+)
+"""What may speak for a candidate or against it, in the order of the columns of `evidence`."""
+_AT_ONCE = re.compile(
+    r"\b(?:at once|at the (?:very )?same (?:time|moment|instant)|same time|simultaneous\w*|together|concurrent\w*|meanwhile|while|"
+    r"whilst|as you|in (?:the )?one (?:go|move|shot)|all in one|both|in a single \w+|during)\b"
+)
+_IN_TURN = re.compile(
+    r"\b(?:then|after\w*|next|followed|before|afore|prior|preced\w*|first|second|third|last|finally|finish\w*|end|now|later|"
+    r"once (?:you|the|they|it|he|she|that)|subsequently|upon|when|as soon as|the (?:moment|minute|second|instant)|until|done|"
+    r"having|sooner)\b"
+)
+_LEAST = 0.01
+"""Probability of a command that is no gesture, so that its logarithm is bounded."""
+_OF_A_PHRASE = 0.97
+"""Least probability of a phrase of the corpus."""
+_NO_TAGS = -9.0
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """One way to read a sentence.
+
+    Attributes:
+        reading: the reading.
+        by_rules: whether the rules read it so.
+        likeliest: whether the tagger's likeliest division is read so.
+        in_sentence: logarithm of the least probability of a gesture among the marked commands, in their sentence.
+        log_share: logarithm of the probability of its division, relative to the likeliest one.
+    """
+
+    reading: Reading
+    by_rules: bool = False
+    likeliest: bool = False
+    in_sentence: float = 0.0
+    log_share: float = _NO_TAGS
+
+
+class Ways(NamedTuple):
+    """The ways to read a sentence.
+
+    Attributes:
+        candidates: no two have the same commands in the same steps.
+        meant: the gesture that each of their commands (`commands_of`) means by itself.
+        whole: what the whole sentence means.
+    """
+
+    candidates: Sequence[Candidate]
+    meant: Mapping[str, Meant]
+    whole: Meant
+
+
+def in_sentence(meant: Sequence[Meant]) -> float:
+    """`Candidate.in_sentence` of marked commands that mean the given gestures."""
+    return min((_log(one) for one in meant), default=0.0)
+
+
+def merged(candidates: Iterable[Candidate]) -> list[Candidate]:
+    """Candidates of which no two have the same commands in the same steps; one has what speaks for any of these.
+
+    The first of them gives the manner of the commands, and the likeliest one what they mean in their sentence.
+    """
+    found: dict[tuple[tuple[str, ...], ...], Candidate] = {}
+    for one in candidates:
+        key = tuple(tuple(sorted(command.text for command in step)) for step in one.reading.steps)
+        if (same := found.get(key)) is None:
+            found[key] = one
+            continue
+        likelier = max(same, one, key=lambda candidate: candidate.log_share)
+        found[key] = Candidate(
+            same.reading if same.reading.denied or not one.reading.denied else replace(same.reading, denied=one.reading.denied),
+            same.by_rules or one.by_rules,
+            same.likeliest or one.likeliest,
+            likelier.in_sentence,
+            likelier.log_share,
+        )  # fmt: skip
+    return list(found.values())
+
+
+def commands_of(candidates: Iterable[Candidate]) -> list[str]:
+    """The words of all commands of candidates, each once."""
+    return list(dict.fromkeys(c.text for one in candidates for step in one.reading.steps for c in step))
+
+
+def evidence(ways: Ways) -> NDArray[np.float64]:
+    """What speaks for each of N candidates, (N, len(EVIDENCE))."""
+    in_divisions = _in_divisions(ways)
+    return np.array([_evidence(one, ways, in_divisions) for one in ways.candidates])
+
+
+def chosen(ways: Ways) -> Reading:
+    """The reading of the candidate for which most speaks.
+
+    If it has one command without tempo, size and hold, this takes the manner of another candidate of one command.
+    """
+    by_score = np.argsort(-(evidence(ways) @ _weights()), kind="stable")
+    best, *others = (ways.candidates[i].reading for i in by_score)
+    if not _is_one_command(best) or not best.steps[0][0].manner.plain:
+        return best
+    manners = (one.steps[0][0].manner for one in others if _is_one_command(one))
+    manner = next((manner for manner in manners if not manner.plain), best.steps[0][0].manner)
+    return replace(best, steps=((replace(best.steps[0][0], manner=manner),),))
+
+
+def _is_one_command(reading: Reading) -> bool:
+    return [len(step) for step in reading.steps] == [1]
+
+
+def _evidence(one: Candidate, ways: Ways, in_divisions: Mapping[str, float]) -> list[float]:
+    meant, whole = ways.meant, ways.whole
+    said = one.reading.text.lower()
+    commands = [command.text for step in one.reading.steps for command in step]
+    unknown = set(unknown_commands(one.reading))
+    logs = [max(_log(meant[c]), -math.inf if c in unknown else math.log(_OF_A_PHRASE)) for c in commands]
+    names = [meant[command].name for command in commands]
+    several = len(commands) > 1
+    one_step = several and len(one.reading.steps) == 1
+    return [
+        one.by_rules,
+        one.by_rules and is_sure(one.reading),
+        one.likeliest,
+        sum(logs),
+        sum(logs) / max(len(logs), 1),
+        min(logs, default=0.0),
+        one.in_sentence,
+        sum(log < math.log(SURE) for log in logs),
+        sum(1 - in_divisions.get(family, 0.0) for family in set(map(_family, names))),
+        0 if asks_again(said) else len(names) - len(set(names)),
+        whole.probability if several and is_gesture(whole.name) else 0.0,
+        one_step,
+        one_step and _AT_ONCE.search(said) is not None,
+        one_step and len(frozenset[str]().union(*(c.limbs for c in one.reading.steps[0]))) < len(commands),
+        len(one.reading.steps) > 1 and _IN_TURN.search(said) is not None,
+        not commands,
+    ]
+
+
+def _in_divisions(ways: Ways) -> dict[str, float]:
+    """For each family of gestures, the share of the tagger's divisions, by their probability, in which it surely is."""
+    meant = ways.meant
+    share: defaultdict[str, float] = defaultdict(float)
+    total = 0.0
+    for one in ways.candidates:
+        probability = math.exp(one.log_share)
+        total += probability
+        unknown = set(unknown_commands(one.reading))
+        said = [command.text for step in one.reading.steps for command in step]
+        for family in {
+            _family(meant[c].name)
+            for c in said
+            if is_gesture(meant[c].name) and (c not in unknown or meant[c].probability >= SURE)
+        }:
+            share[family] += probability
+    return {family: some / total for family, some in share.items()}
+
+
+def _family(gesture: str) -> str:
+    return gesture.partition("/")[0]
+
+
+def _log(meant: Meant) -> float:
+    """Logarithm of the probability of a gesture."""
+    return math.log(max(meant.probability if is_gesture(meant.name) else 0.0, _LEAST))
+
+
+@cache
+def _weights() -> NDArray[np.float64]:
+    weights = dict(pairs("choice"))
+    return np.array([float(weights[name]) for name in EVIDENCE])
