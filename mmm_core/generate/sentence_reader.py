@@ -29,13 +29,15 @@ from mmm_core.language.plain_gestures import (
     Meant,
     in_plain_words,
     is_sure_of,
+    is_surely_outside,
+    may_deny,
     without_denied_acts,
 )
 from mmm_core.language.positions import in_said_order
 from mmm_core.language.reading import read
 from mmm_core.language.said_at_once import said_at_once, without_repeats
 from mmm_core.language.spelling import mended
-from mmm_core.language.sure_reading import leaves_words_out, needs_tags, unknown_commands
+from mmm_core.language.sure_reading import is_sure, leaves_words_out, needs_tags, unknown_commands
 from mmm_core.language.tagged_manner import manner_phrases, with_left_manner, with_likely_manner, with_plain_manner
 from mmm_core.language.tagged_reading import can_be_read, read_marked, without_splits
 from mmm_core.language.tagged_words import MarkedCommands, likely_tags, marked_commands, words_of
@@ -108,11 +110,9 @@ class SentenceReader:
         states = self._states(words)
         if ways := self._ways(text, words, states):
             found = chosen(ways)
-        elif leaves_words_out(by_rules):
-            phrases = manner_phrases(words, self._tagged(states)[1])
-            found = said_at_once(without_repeats(with_left_manner(by_rules, words, phrases)))
         else:
-            return by_rules
+            found = with_left_manner(by_rules, words, manner_phrases(words, self._tagged(states)[1]))
+            found = said_at_once(without_repeats(found))
         whole = states.meant
         outside = whole.probability if whole.name == OUTSIDE else 0.0
         return replace(without_denied_acts(with_likely_manner(found, whole.manners), whole), outside=outside)
@@ -132,7 +132,8 @@ class SentenceReader:
     def _ways(self, text: str, words: str, states: _Encoded) -> Ways | None:
         """The ways to read the words of a text, by the rules and by tags, also with its manner in plain words."""
         by_rules = read(words)
-        if not needs_tags(by_rules) or (not by_rules.steps and surely_denies(words)):
+        is_denial = not by_rules.steps and surely_denies(words)
+        if is_denial or not needs_tags(by_rules) or (not by_rules.denied and is_surely_outside(states.meant)):
             return None
         tags, manners = self._tagged(states)
         phrases = manner_phrases(words, manners)
@@ -141,7 +142,8 @@ class SentenceReader:
         if plain != words and 0 < len(words_of(plain)) <= MAX_WORD_PIECES:
             of_plain = self._states(plain)
             found += [
-                replace(one, by_rules=False) for one in self._candidates(plain, of_plain, self._tagged(of_plain)[0])
+                replace(one, by_rules=False, sure_rules=False)
+                for one in self._candidates(plain, of_plain, self._tagged(of_plain)[0])
             ]
         found += self._candidates(words, states, tags)
         if by_rules.denied:  # what is denied must not be done
@@ -160,17 +162,18 @@ class SentenceReader:
         divisions: dict[MarkedCommands, float] = {}
         for sequence, log in likely_tags(tags, _DIVISIONS):
             marked = marked_commands(words, without_splits(words, sequence))
-            if can_be_read(marked):
+            if can_be_read(marked) and (may_deny(words) or not marked.denied):
                 divisions.setdefault(marked, log)
         meant = self._meant_in_sentence(states, list(divisions))
         best = max(divisions.values(), default=0.0)
-        return [
-            Candidate(read(words), by_rules=True),
-            *(
-                Candidate(read_marked(words, marked, means), False, log == best, in_sentence(means), log - best)
-                for (marked, log), means in zip(divisions.items(), meant, strict=True)
-            ),
-        ]
+        by_rules = read(words)
+        found = [Candidate(by_rules, by_rules=True, sure_rules=is_sure(by_rules))]
+        for (marked, log), means in zip(divisions.items(), meant, strict=True):
+            reading = read_marked(words, marked, means)
+            found.append(
+                Candidate(reading, likeliest=log == best, in_sentence=in_sentence(means), log_share=log - best)
+            )
+        return found
 
     def _meant_in_sentence(self, states: _Encoded, divisions: Sequence[MarkedCommands]) -> list[list[Meant]]:
         """The gestures that the commands of each division mean in their sentence."""

@@ -18,10 +18,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mmm_core.language.commands import Reading
-from mmm_core.language.plain_gestures import SURE, Meant, is_gesture
+from mmm_core.language.plain_gestures import OUTSIDE, SURE, Meant, is_gesture
 from mmm_core.language.said_at_once import asks_again
-from mmm_core.language.sure_reading import is_sure, unknown_commands
-from mmm_core.language.word_tables import pairs
+from mmm_core.language.sure_reading import unknown_commands
+from mmm_core.language.word_tables import lines, pairs
 
 EVIDENCE = (
     "by rules",  # the rules read the sentence so
@@ -53,8 +53,8 @@ _IN_TURN = re.compile(
 )
 _LEAST = 0.01
 """Probability of a command that is no gesture, so that its logarithm is bounded."""
-_OF_A_PHRASE = 0.97
-"""Least probability of a phrase of the corpus."""
+_OF_A_PHRASE = math.log(0.97)
+"""Logarithm of the least probability of a phrase of the corpus, and of a task that is no gesture: it is refused, not left out."""
 _NO_TAGS = -9.0
 
 
@@ -65,6 +65,7 @@ class Candidate:
     Attributes:
         reading: the reading.
         by_rules: whether the rules read it so.
+        sure_rules: whether these are sure of the division.
         likeliest: whether the tagger's likeliest division is read so.
         in_sentence: logarithm of the least probability of a gesture among the marked commands, in their sentence.
         log_share: logarithm of the probability of its division, relative to the likeliest one.
@@ -72,6 +73,7 @@ class Candidate:
 
     reading: Reading
     by_rules: bool = False
+    sure_rules: bool = False
     likeliest: bool = False
     in_sentence: float = 0.0
     log_share: float = _NO_TAGS
@@ -111,6 +113,7 @@ def merged(candidates: Iterable[Candidate]) -> list[Candidate]:
         found[key] = Candidate(
             same.reading if same.reading.denied or not one.reading.denied else replace(same.reading, denied=one.reading.denied),
             same.by_rules or one.by_rules,
+            same.sure_rules or one.sure_rules,
             same.likeliest or one.likeliest,
             likelier.in_sentence,
             likelier.log_share,
@@ -152,20 +155,24 @@ def _evidence(one: Candidate, ways: Ways, in_divisions: Mapping[str, float]) -> 
     said = one.reading.text.lower()
     commands = [command.text for step in one.reading.steps for command in step]
     unknown = set(unknown_commands(one.reading))
-    logs = [max(_log(meant[c]), -math.inf if c in unknown else math.log(_OF_A_PHRASE)) for c in commands]
+    logs = [
+        _log(meant[c]) if c in unknown and not _is_task(c, meant[c]) else max(_log(meant[c]), _OF_A_PHRASE)
+        for c in commands
+    ]
     names = [meant[command].name for command in commands]
+    families = {_family(name) for name in names if is_gesture(name)}
     several = len(commands) > 1
     one_step = several and len(one.reading.steps) == 1
     return [
         one.by_rules,
-        one.by_rules and is_sure(one.reading),
+        one.sure_rules,
         one.likeliest,
         sum(logs),
         sum(logs) / max(len(logs), 1),
         min(logs, default=0.0),
         one.in_sentence,
         sum(log < math.log(SURE) for log in logs),
-        sum(1 - in_divisions.get(family, 0.0) for family in set(map(_family, names))),
+        sum(1 - in_divisions.get(family, 0.0) for family in families),
         0 if asks_again(said) else len(names) - len(set(names)),
         whole.probability if several and is_gesture(whole.name) else 0.0,
         one_step,
@@ -193,6 +200,12 @@ def _in_divisions(ways: Ways) -> dict[str, float]:
         }:
             share[family] += probability
     return {family: some / total for family, some in share.items()}
+
+
+def _is_task(command: str, meant: Meant) -> bool:
+    """Whether words ask for something that is surely no gesture and has to be refused: "run away"."""
+    is_no_gesture = meant.name == OUTSIDE and meant.probability >= SURE
+    return is_no_gesture and command.lower().partition(" ")[0] in lines("task_verbs")
 
 
 def _family(gesture: str) -> str:

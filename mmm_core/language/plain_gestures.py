@@ -157,7 +157,7 @@ def without_unasked(reading: Reading, meant: Sequence[Meant]) -> Reading:
         reading: the sentence as it was read.
         meant: what each of its commands means in the sentence, in order; none where that is not known.
     """
-    if not meant or _MAY_DENY.search(reading.text.lower()) is None:
+    if not meant or not may_deny(reading.text):
         return reading
     of_commands = iter(meant)
     steps = [[(command, not is_surely_outside(next(of_commands))) for command in step] for step in reading.steps]
@@ -173,16 +173,16 @@ def is_surely_outside(meant: Meant) -> bool:
 
 def without_denied_acts(reading: Reading, whole: Meant) -> Reading:
     """A reading of a sentence that asks for no motion in all likelihood, without commands: "everyone but you is to clap"."""
-    is_denial = whole.denied >= SURELY_DENIED and _MAY_DENY.search(reading.text.lower()) is not None
+    is_denial = whole.denied >= SURELY_DENIED and may_deny(reading.text)
     if not is_denial or not reading.steps or reading.denied:  # what is denied beside a command was found already
         return reading
     acts = tuple(command.text for step in reading.steps for command in step)
     return replace(reading, steps=(), denied=acts, plain=False)
 
 
-def is_lost(meant: Meant, of_rest: Meant) -> bool:
-    """Whether the words that were left out named the gesture: the sentence surely means it, the rest of it probably not."""
-    return is_sure_of(meant) and of_rest.name != meant.name and not is_sure_of(of_rest)
+def may_deny(text: str) -> bool:
+    """Whether a text has a word of a denial."""
+    return _MAY_DENY.search(text.lower()) is not None
 
 
 def is_gesture(name: str) -> bool:

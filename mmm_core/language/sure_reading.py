@@ -8,21 +8,11 @@ from mmm_core.language.clause_patterns import BEGINS_WITH_A_VERB, LIMB_FIRST
 from mmm_core.language.commands import Reading
 from mmm_core.language.known_phrases import CAPTION_SUBJECT, is_known_phrase, key_of
 from mmm_core.language.limbs import is_gesture_verb, limbs_of
-from mmm_core.language.stop_words import means_stop
 
 _JOINS = re.compile(
     r"[,;:.]|\b(?:and|then|while|but|before|after|once (?:you|the|they|it|he|she|i|we|that)|when|as|so|that|if|because|for)\b"
 )
 """Marks and words of which a single command seldom has one: more than one command, a reason or a story may be left in it."""
-_LIMB_ALONE = re.compile(
-    r"^(?:(?:and |with )*(?:your |both |the )?(?:left |right )?(?:hands?|arms?|head|fists?|palms?|shoulders?|elbows?)(?: one)?|"
-    r"(?:the |your )?eyes|that)$"
-)
-_STOPS = re.compile(r"^(?:then )?stop\b(?! sign)")
-_IS_OPEN = re.compile(
-    r"\b(?:to|as|as if|like|how|that|who|then|an?|the|with|without|of|for|from|and)$|"
-    r"^(?:mime|pretend|act|make|do|does|with)\b(?: \w+)?$"
-)
 _NOUN_FIRST = re.compile(r"(?:an?|one|two|three|\w+) \w+")
 _IS_CAPTION = re.compile(CAPTION_SUBJECT)
 _BESIDE = re.compile(
@@ -88,24 +78,12 @@ def _is_known(command: str) -> bool:
     return is_gesture_verb(command.partition(" ")[0]) if key_of(command) is None else is_known_phrase(command)
 
 
-def names_acts(reading: Reading) -> bool:
-    """Whether each command begins with a verb or names a limb, or is a phrase of the corpus."""
-    return all(_stands_alone(command.text.lower()) for step in reading.steps for command in step)
-
-
 def _is_simple(command: str) -> bool:
     words = command.split()
     if len(words) > _LONGEST_SURE or _JOINS.search(command.rstrip(" .")):
         return False
     begins = begins_with_a_verb(command) or LIMB_FIRST.match(command) is not None
     return begins or (_NOUN_FIRST.match(command) is not None and bool(limbs_of(command)))
-
-
-def _stands_alone(command: str) -> bool:
-    """Whether words are a command: they begin with a verb, or name a limb and more than the limb, and do not say to stop."""
-    if means_stop(command) or any(pattern.search(command) for pattern in (_STOPS, _LIMB_ALONE, _IS_OPEN)):
-        return False
-    return begins_with_a_verb(command) or bool(limbs_of(command)) or is_known_phrase(command)
 
 
 def begins_with_a_verb(words: str) -> bool:

@@ -51,19 +51,20 @@ class Labelled:
     right: NDArray[np.bool_]
 
 
-def train_choice(out: Path, reader: SentenceReader | None = None) -> tuple[int, int, int]:
+def train_choice(out: Path, reader: SentenceReader | None = None, sets: Sequence[str] = SETS) -> tuple[int, int, int]:
     """Find the weights and write them as a table of words, the file that `mmm_core/language/words/choice.txt` is.
 
     Args:
         out: file of the weights.
         reader: gives the candidates; the shipped one when None.
+        sets: sets of sentences, two or more.
 
     Returns:
         Number of sentences with candidates, of those with a right one, and of those for which weights of the other sets choose one.
     """
-    given = labelled(reader or SentenceReader.load())
+    given = labelled(reader or SentenceReader.load(), sets)
     chosen = 0
-    for name in SETS:
+    for name in sets:
         weights = fitted([one for one in given if one.of_set != name])
         chosen += sum(one.right[(one.evidence @ weights).argmax()] for one in given if one.of_set == name)
     rows = [f"{name} => {weight:.3f}" for name, weight in zip(EVIDENCE, fitted(given), strict=True)]
@@ -72,11 +73,11 @@ def train_choice(out: Path, reader: SentenceReader | None = None) -> tuple[int, 
     return len(given), sum(bool(one.right.any()) for one in given), int(chosen)
 
 
-def labelled(reader: SentenceReader) -> list[Labelled]:
-    """The sentences of `SETS` that may be read in several ways."""
+def labelled(reader: SentenceReader, sets: Sequence[str] = SETS) -> list[Labelled]:
+    """The sentences of sets that may be read in several ways."""
     found: list[Labelled] = []
     for of_set, sentence in tqdm(
-        [(name, s) for name in SETS for s in read_sentences(name)], desc="sentences", unit="sentence"
+        [(name, s) for name in sets for s in read_sentences(name)], desc="sentences", unit="sentence"
     ):
         if ways := reader.ways_to_read(sentence.text):
             right = np.array([is_right(one.reading, sentence, ways) for one in ways.candidates])

@@ -19,7 +19,17 @@ if TYPE_CHECKING:
     from mmm_core.training.run import Run
 
 Stage = Literal[
-    "all", "tokenizer", "transformer", "length", "evaluator", "scope", "tagger", "gestures", "average", "ablation"
+    "all",
+    "tokenizer",
+    "transformer",
+    "length",
+    "evaluator",
+    "scope",
+    "tagger",
+    "gestures",
+    "choice",
+    "average",
+    "ablation",
 ]
 
 
@@ -61,6 +71,8 @@ def train(
 
     Example, what tells which gesture is meant: mmmd train gestures --out gestures.safetensors
 
+    Example, what chooses among the ways to read a sentence: mmmd train choice --out choice.txt
+
     Example, the mean of models with one start: mmmd train average --models a.safetensors b.safetensors --out c.safetensors
 
     Example, one choice of the recipe changed at a time: mmmd train ablation --data DIR --precision bf16 --run runs/ablation
@@ -70,7 +82,8 @@ def train(
     Args:
         stage: all of them and a checkpoint, or one; scope builds what refusals rest on again for the run's checkpoint;
             tagger trains what divides sentences into commands, from the marked sentences that ship (50 minutes, no recipe);
-            gestures trains what tells which gesture other words mean, from the phrases that ship (30 minutes, no recipe);
+            gestures trains what tells which gesture other words mean, from the phrases that ship (an hour, no recipe);
+            choice finds the weights with which one of the ways to read a sentence is chosen (two minutes, no recipe);
             average writes the mean of --models; ablation trains variants of a recipe and prints what the probes and real
             captions say of each.
         config: name of a recipe that ships, or a TOML file (docs/training.md); compact, or ablation for that stage.
@@ -104,7 +117,7 @@ def train(
         raise CommandError(f"train {stage}: --models is for `mmmd train average`, which needs two of them or more")
     if stage == "average":
         return _average(models, out)
-    if stage in ("tagger", "gestures"):
+    if stage in ("tagger", "gestures", "choice"):
         return _reader_part(stage, out)
     config = config or ("ablation" if stage == "ablation" else "compact")
     recipe = read_recipe(config, seed)
@@ -162,8 +175,9 @@ def _average(models: Sequence[Path], out: Path | None) -> int:
     return 0
 
 
-def _reader_part(stage: Literal["tagger", "gestures"], out: Path | None) -> int:
-    """Train and write the sentence tagger or the gesture classifier."""
+def _reader_part(stage: Literal["tagger", "gestures", "choice"], out: Path | None) -> int:
+    """Train and write the sentence tagger, the gesture classifier, or the weights of the choice among readings."""
+    from mmm_core.training.choice_training import train_choice
     from mmm_core.training.gesture_training import train_classifier
     from mmm_core.training.tagger_training import train_tagger
 
@@ -171,8 +185,14 @@ def _reader_part(stage: Literal["tagger", "gestures"], out: Path | None) -> int:
         raise CommandError(f"train {stage}: --out F: where the weights go; the shipped file is not overwritten unasked")
     if stage == "tagger":
         train_tagger(out)
-    else:
+    elif stage == "gestures":
         train_classifier(out)
+    else:
+        n, n_possible, n_chosen = train_choice(out)
+        sys.stdout.write(
+            f"{n} sentences may be read in several ways, {n_possible} of them in a right one; "
+            f"it is chosen in {n_chosen} with weights that were found without their set\n"
+        )
     sys.stdout.write(f"{out}\n")
     return 0
 

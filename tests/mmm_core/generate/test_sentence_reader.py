@@ -85,6 +85,11 @@ def test_words_of_the_act_are_not_taken_for_its_manner(reader: SentenceReader, e
         ("Rap on the hatch twice with your left hand, then tell these noisy kids to be quiet",
          [["knock on the door with your left hand 2 times"], ["put your finger to your lips"]]),
         ("do a somersault", [["do a somersault"]]),
+        ("Sparring time! A jab, then an uppercut with the left.",
+         [["punch forward"], ["an uppercut with your left hand"]]),
+        ("Have yourself a good stretch, and as you do, yawn.", [["stretch your arms up", "yawn"]]),
+        ("The soup wants stirring; once it has been stirred, taste it.",
+         [["stir the soup"], ["bring food to your mouth"]]),
     ],
 )  # fmt: skip
 def test_a_sentence_is_divided_and_completed(reader: SentenceReader, sentence: str, steps: list[list[str]]) -> None:
@@ -96,6 +101,31 @@ def test_a_sentence_is_divided_and_completed(reader: SentenceReader, sentence: s
 )
 def test_what_the_rules_are_sure_of_or_cannot_be_tagged_is_read_as_before(reader: SentenceReader, text: str) -> None:
     assert replace(reader.read(text), outside=0.0) == read(text)
+
+
+@pytest.mark.parametrize("every", few_and_long([8], [1]))
+def test_what_the_rules_deny_stays_denied(reader: SentenceReader, every: int) -> None:
+    given = [s.text for name in ("words_dev", "words_dev_2") for s in read_sentences(name) if read(s.text).denied]
+    assert len(given) > 150
+    assert [text for text in given[::every] if not reader.read(text).denied] == []
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "Under no circumstances make the zombie arms when the visitors come in.",
+        "On no account may your left arm go up while the door is open.",
+        "Nobody's asked for a bow, so not one out of you.",
+    ],
+)
+def test_words_that_deny_all_that_follows_are_believed(reader: SentenceReader, text: str) -> None:
+    found = reader.read(text)
+    assert found.denied
+    assert not found.steps
+
+
+def test_what_cannot_be_done_is_not_left_out(reader: SentenceReader) -> None:
+    assert [c.text for step in reader.read("clap your hands, then run away").steps for c in step][-1] == "run away"
 
 
 @pytest.mark.parametrize("every", few_and_long([4], [1]))

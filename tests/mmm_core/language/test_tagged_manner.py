@@ -116,9 +116,9 @@ def test_a_denial_that_is_nothing_but_a_manner_denies_nothing() -> None:
 
 def test_the_only_command_takes_the_likely_manner_of_the_sentence() -> None:
     found = read("nod like a sleepy cow")
-    slow = with_likely_manner(found, {"slow": LIKELY_OF_WHOLE, "large": LIKELY_OF_WHOLE - 0.01})
+    slow = with_likely_manner(found, {"slow": LIKELY_OF_WHOLE["slow"], "large": LIKELY_OF_WHOLE["large"] - 0.01})
     assert [command.manner for step in slow.steps for command in step] == [read("nod slowly").steps[0][0].manner]
-    assert with_likely_manner(found, {"slow": LIKELY_OF_WHOLE - 0.01}) == found
+    assert with_likely_manner(found, {"slow": LIKELY_OF_WHOLE["slow"] - 0.01}) == found
 
 
 def test_a_manner_that_is_said_stays() -> None:

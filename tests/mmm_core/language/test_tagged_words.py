@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from mmm_core.language.tagged_words import BEGINS, INSIDE, OUTSIDE, TAGS, likeliest_tags, marked_commands, words_of
+from mmm_core.language.tagged_words import BEGINS, INSIDE, OUTSIDE, TAGS, likely_tags, marked_commands, words_of
 
 
 def _score(tags: tuple[str, ...], scores: np.ndarray) -> float:
@@ -22,13 +22,17 @@ def _allowed(tags: tuple[str, ...]) -> bool:
     )
 
 
-@given(st.lists(st.lists(st.floats(-5, 0, width=32), min_size=8, max_size=8), min_size=1, max_size=3))
-def test_the_likeliest_tags_are_the_best_of_all_allowed_ones(rows: list[list[float]]) -> None:
+@given(
+    st.lists(st.lists(st.floats(-5, 0, width=32), min_size=8, max_size=8), min_size=1, max_size=3), st.integers(1, 20)
+)
+def test_the_likely_tags_are_the_best_of_all_allowed_ones(rows: list[list[float]], n: int) -> None:
     scores = np.array(rows, np.float32)
-    found = tuple(likeliest_tags(scores))
-    assert _allowed(found)
-    best = max(_score(tags, scores) for tags in itertools.product(TAGS, repeat=len(rows)) if _allowed(tags))
-    assert _score(found, scores) == pytest.approx(best, abs=1e-4)
+    found = likely_tags(scores, n)
+    assert all(_allowed(tuple(tags)) for tags, _ in found)
+    assert len({tuple(tags) for tags, _ in found}) == len(found)
+    best = sorted((_score(t, scores) for t in itertools.product(TAGS, repeat=len(rows)) if _allowed(t)), reverse=True)
+    assert [log for _, log in found] == pytest.approx(best[:n], abs=1e-4)
+    assert [log for _, log in found] == pytest.approx([_score(tuple(tags), scores) for tags, _ in found], abs=1e-4)
 
 
 @given(st.text(st.characters(codec="utf-8"), max_size=30), st.data())
