@@ -27,6 +27,7 @@ from mmm_core.language.mirroring import canonical, mirror_words
 from mmm_core.language.plain_gestures import (
     OUTSIDE,
     Meant,
+    gesture_of,
     in_plain_words,
     is_sure_of,
     is_surely_outside,
@@ -46,7 +47,7 @@ from mmm_core.model.gesture_classifier import GestureClassifier, meant_by, meant
 from mmm_core.model.sentence_tagger import SentenceTagger, WordStates, log_probability, pieces_of, word_states
 from mmm_core.model.text import MAX_WORD_PIECES, MiniLm, strip_emoji
 
-_DIVISIONS = 16
+_DIVISIONS = 8
 """Sequences of tags that are looked at, at most."""
 _FIRST_SENTENCE = "nod, and once you have done that, wave to the people who are waiting"
 """A sentence for the tagger, read when it is loaded: the first one takes several times as long as the others."""
@@ -140,7 +141,7 @@ class SentenceReader:
         found: list[Candidate] = []
         plain = with_plain_manner(words, phrases)
         if plain != words and 0 < len(words_of(plain)) <= MAX_WORD_PIECES:
-            of_plain = self._states(plain)
+            of_plain = self._states(plain, states.meant)
             found += [
                 replace(one, by_rules=False, sure_rules=False)
                 for one in self._candidates(plain, of_plain, self._tagged(of_plain)[0])
@@ -205,21 +206,29 @@ class SentenceReader:
         if new := [text for text in commands if text not in self._classified]:
             if len(self._classified) > REMEMBERED:
                 self._classified = {text: self._classified[text] for text in commands if text not in new}
-            images = [canonical(text) for text in new]
-            found = meant_by(self._classifier, self._encoder, [image for image, _ in images])
-            for text, one, (_, mirrored) in zip(new, found, images, strict=True):
-                self._classified[text] = _seen_in_mirror(Meant(*one)) if mirrored else Meant(*one)
+            self._classified |= {text: Meant(gesture, 1.0) for text in new if (gesture := gesture_of(text))}
+            self._classify([text for text in new if text not in self._classified])
         return {text: self._classified[text] for text in commands}
 
-    def _states(self, sentence: str) -> _Encoded:
+    def _classify(self, commands: Sequence[str]) -> None:
+        if commands:
+            images = [canonical(text) for text in commands]
+            found = meant_by(self._classifier, self._encoder, [image for image, _ in images])
+            for text, one, (_, mirrored) in zip(commands, found, images, strict=True):
+                self._classified[text] = _seen_in_mirror(Meant(*one)) if mirrored else Meant(*one)
+
+    def _states(self, sentence: str, meant: Meant | None = None) -> _Encoded:
+        """States of a sentence, which means `meant` if that is given."""
         image, is_image = canonical(sentence)
         if len(words_of(image)) != len(words_of(sentence)):  # tags are of the sentence's own words
             image, is_image = sentence, False
         words = [image[start:end] for start, end in words_of(image)]
         states = word_states(self._encoder, self._tagger.config.n_shared, [words])[0]
-        mask = torch.ones(1, len(states.states), dtype=torch.bool)
-        meant = Meant(*meant_by_states(self._classifier, states.states[None], mask)[0])
-        return _Encoded(states, _seen_in_mirror(meant) if is_image else meant, is_image)
+        if meant is None:
+            mask = torch.ones(1, len(states.states), dtype=torch.bool)
+            meant = Meant(*meant_by_states(self._classifier, states.states[None], mask)[0])
+            meant = _seen_in_mirror(meant) if is_image else meant
+        return _Encoded(states, meant, is_image)
 
     def _tagged(self, states: _Encoded) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
         """The (N, 8) log-probabilities of the tags of a sentence's words, and the (N, 5) ones of their manners."""

@@ -40,6 +40,8 @@ IN_TURN = re.compile(
     r"\b(?:with alternating (?:hands|arms|fists)|alternat\w*|in turns?|by turns|one after the other)\b"
 )
 """Words for arms that take turns."""
+_COUNT = re.compile(r" (?:once|\d+ times)$")
+"""The number of strokes of a plain command."""
 
 
 SURE, SURE_OF_ALL = 0.75, 0.96
@@ -108,6 +110,11 @@ def plain_command(gesture: str, said: str) -> str:
     if not command or not count:
         return command
     return f"{command} {count} times" if count > 1 else f"{command} once"
+
+
+def gesture_of(command: str) -> str:
+    """The gesture whose plain command this is, with whatever arm and number of strokes; empty for other words."""
+    return _by_command().get(_COUNT.sub("", command), "")
 
 
 def in_plain_words(reading: Reading, whole: Meant, commands: Mapping[str, Meant]) -> Reading:
@@ -201,6 +208,18 @@ def _plain_words(meant: Meant, said: str, least: float) -> str:
 
 def _said(command: PlainCommand, words: str) -> PlainCommand:
     return replace(command, text=words, limbs=limbs_of(words)) if words else command
+
+
+@cache
+def _by_command() -> dict[str, str]:
+    """Maps plain commands to their gestures."""
+    return {
+        command.replace("{S}", side): gesture
+        for gesture, said in _plain().items()
+        for command in said
+        for side in ("left", "right")
+        if command
+    }
 
 
 @cache
