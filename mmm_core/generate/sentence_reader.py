@@ -29,8 +29,8 @@ from mmm_core.language.plain_gestures import (
     Meant,
     gesture_of,
     in_plain_words,
+    is_likely_outside,
     is_sure_of,
-    is_surely_outside,
     may_deny,
     without_denied_acts,
 )
@@ -134,7 +134,7 @@ class SentenceReader:
         """The ways to read the words of a text, by the rules and by tags, also with its manner in plain words."""
         by_rules = read(words)
         is_denial = not by_rules.steps and surely_denies(words)
-        if is_denial or not needs_tags(by_rules) or (not by_rules.denied and is_surely_outside(states.meant)):
+        if is_denial or not needs_tags(by_rules) or (not by_rules.denied and is_likely_outside(states.meant)):
             return None
         tags, manners = self._tagged(states)
         phrases = manner_phrases(words, manners)

@@ -46,6 +46,7 @@ _COUNT = re.compile(r" (?:once|\d+ times)$")
 
 SURE, SURE_OF_ALL = 0.75, 0.96
 """Least probability of a gesture for a command to be said in plain words, and for a sentence that was divided to be one command."""
+_EVEN = 0.5
 SURELY_DENIED = 0.9
 """Least probability that a sentence asks for nothing, for none of its commands to be done."""
 _MAY_DENY = re.compile(
@@ -171,6 +172,11 @@ def without_unasked(reading: Reading, meant: Sequence[Meant]) -> Reading:
     denied = [command.text for step in steps for command, is_asked in step if not is_asked]
     kept = (tuple(command for command, is_asked in step if is_asked) for step in steps)
     return replace(reading, steps=tuple(filter(None, kept)), denied=(*reading.denied, *denied)) if denied else reading
+
+
+def is_likely_outside(meant: Meant) -> bool:
+    """Whether words more likely ask for no gesture than for any."""
+    return meant.name == OUTSIDE and meant.probability >= _EVEN
 
 
 def is_surely_outside(meant: Meant) -> bool:

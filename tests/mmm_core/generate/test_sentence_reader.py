@@ -107,7 +107,8 @@ def test_what_the_rules_are_sure_of_or_cannot_be_tagged_is_read_as_before(reader
 def test_what_the_rules_deny_stays_denied(reader: SentenceReader, every: int) -> None:
     given = [s.text for name in ("words_dev", "words_dev_2") for s in read_sentences(name) if read(s.text).denied]
     assert len(given) > 150
-    assert [text for text in given[::every] if not reader.read(text).denied] == []
+    found = [(text, reader.read(text)) for text in given[::every]]
+    assert [text for text, one in found if not one.denied and not _manners(one)] == [], "what is denied may be a manner"
 
 
 @pytest.mark.parametrize(
