@@ -27,6 +27,7 @@ from mmm_core.language.mirroring import canonical, mirror_words
 from mmm_core.language.plain_gestures import (
     OUTSIDE,
     Meant,
+    alternates,
     gesture_of,
     in_plain_words,
     is_likely_outside,
@@ -149,6 +150,8 @@ class SentenceReader:
         found += self._candidates(words, states, tags)
         if by_rules.denied:  # what is denied must not be done
             found = [one for one in found if one.reading.denied]
+        if alternates(by_rules):  # tags take the arms of one command for commands
+            found = [one for one in found if one.by_rules]
         readings = [replace(one.reading, text=text) for one in found]
         self._classes(list(dict.fromkeys(chain.from_iterable(map(unknown_commands, readings)))))  # all in one pass
         finished = [self._in_plain_words(with_left_manner(one, words, phrases), states) for one in readings]

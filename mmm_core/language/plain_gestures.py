@@ -193,6 +193,12 @@ def without_denied_acts(reading: Reading, whole: Meant) -> Reading:
     return replace(reading, steps=(), denied=acts, plain=False)
 
 
+def alternates(reading: Reading) -> bool:
+    """Whether a reading is one command of arms in turn: "party with your arms left and right in turn"."""
+    said = [command.text for step in reading.steps for command in step]
+    return len(said) == 1 and IN_TURN.search(said[0]) is not None
+
+
 def may_deny(text: str) -> bool:
     """Whether a text has a word of a denial."""
     return _MAY_DENY.search(text.lower()) is not None

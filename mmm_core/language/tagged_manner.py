@@ -26,7 +26,7 @@ _LEAST_PROBABILITY = 0.7
 """Mean probability, over the words of a phrase, below which a manner is not believed."""
 LIKELY_OF_WHOLE: Mapping[str, float] = {SLOW: 0.6, FAST: 0.3, SMALL: 0.8, LARGE: 0.8}
 LIKELY_OF_PART = 0.9
-"""Least probability of a manner that no words were found for: of a sentence of one command, and of one command of several."""
+"""Least probability of a manner that no words were found for: of a sentence of one command, and of others or with a hold."""
 _ENDS_A_SENTENCE = re.compile(r"[.!?;:](?=\s|$)")
 _MARKS_AT_START = re.compile(r"^[\s,.;:!?\u2026\u2013\u2014-]+")
 _MARKS_AT_END = re.compile(r"[\s,.;:!?\u2026\u2013\u2014-]+$")
@@ -135,7 +135,8 @@ def with_likely_manner(
     said = [command for step in reading.steps for command in step]
     if len(said) == 1:
         commands = {said[0].text: whole}
-    least = LIKELY_OF_WHOLE if len(said) == 1 else dict.fromkeys(LIKELY_OF_WHOLE, LIKELY_OF_PART)
+    is_one_without_hold = len(said) == 1 and not said[0].manner.hold_s  # "wait like that for two seconds" says no tempo
+    least = LIKELY_OF_WHOLE if is_one_without_hold else dict.fromkeys(LIKELY_OF_WHOLE, LIKELY_OF_PART)
 
     def in_manner(command: PlainCommand) -> PlainCommand:
         probabilities = commands.get(command.text, {})

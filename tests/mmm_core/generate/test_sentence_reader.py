@@ -85,6 +85,7 @@ def test_words_of_the_act_are_not_taken_for_its_manner(reader: SentenceReader, e
         ("Rap on the hatch twice with your left hand, then tell these noisy kids to be quiet",
          [["knock on the door with your left hand 2 times"], ["put your finger to your lips"]]),
         ("do a somersault", [["do a somersault"]]),
+        ("party with your arms 2x left and right in turn", [["party with your arms 2 times left and right in turn"]]),
         ("Sparring time! A jab, then an uppercut with the left.",
          [["punch forward"], ["an uppercut with your left hand"]]),
         ("Have yourself a good stretch, and as you do, yawn.", [["stretch your arms up", "yawn"]]),
@@ -123,6 +124,11 @@ def test_words_that_deny_all_that_follows_are_believed(reader: SentenceReader, t
     found = reader.read(text)
     assert found.denied
     assert not found.steps
+
+
+def test_words_of_a_hold_say_no_tempo(reader: SentenceReader) -> None:
+    ((command,),) = reader.read("fight off a punch with your guard and wait like that for two seconds").steps
+    assert (command.manner.tempo, command.manner.hold_s) == (1.0, 2.0)
 
 
 def test_what_cannot_be_done_is_not_left_out(reader: SentenceReader) -> None:
