@@ -41,7 +41,7 @@ from mmm_core.language.said_at_once import said_at_once, without_repeats
 from mmm_core.language.spelling import mended
 from mmm_core.language.sure_reading import is_sure, leaves_words_out, needs_tags, unknown_commands
 from mmm_core.language.tagged_manner import manner_phrases, with_left_manner, with_likely_manner, with_plain_manner
-from mmm_core.language.tagged_reading import can_be_read, read_marked, without_splits
+from mmm_core.language.tagged_reading import can_be_read, reading_of, without_splits
 from mmm_core.language.tagged_words import MarkedCommands, likely_tags, marked_commands, words_of
 from mmm_core.language.word_tables import REMEMBERED
 from mmm_core.model.gesture_classifier import GestureClassifier, meant_by, meant_by_parts, meant_by_states
@@ -162,7 +162,7 @@ class SentenceReader:
         return Ways(candidates, self._classes(commands_of(candidates)), states.meant)
 
     def _candidates(self, words: str, states: _Encoded, tags: NDArray[np.float32]) -> list[Candidate]:
-        """The ways to read words by the rules and by the tags of which these have the logarithms of the probabilities."""
+        """The readings of words by the rules and by each likely sequence of tags; `tags` has their (N, 8) log-probabilities."""
         divisions: dict[MarkedCommands, float] = {}
         for sequence, log in likely_tags(tags, _DIVISIONS):
             marked = marked_commands(words, without_splits(words, sequence))
@@ -173,10 +173,8 @@ class SentenceReader:
         by_rules = read(words)
         found = [Candidate(by_rules, by_rules=True, sure_rules=is_sure(by_rules))]
         for (marked, log), means in zip(divisions.items(), meant, strict=True):
-            reading = read_marked(words, marked, means)
-            found.append(
-                Candidate(reading, likeliest=log == best, in_sentence=in_sentence(means), log_share=log - best)
-            )
+            reading = reading_of(words, marked, means)
+            found.append(Candidate(reading, in_sentence=in_sentence(means), log_share=log - best))
         return found
 
     def _meant_in_sentence(self, states: _Encoded, divisions: Sequence[MarkedCommands]) -> list[list[Meant]]:
@@ -210,15 +208,15 @@ class SentenceReader:
             if len(self._classified) > REMEMBERED:
                 self._classified = {text: self._classified[text] for text in commands if text not in new}
             self._classified |= {text: Meant(gesture, 1.0) for text in new if (gesture := gesture_of(text))}
-            self._classify([text for text in new if text not in self._classified])
+            if others := [text for text in new if text not in self._classified]:
+                self._classify(others)
         return {text: self._classified[text] for text in commands}
 
     def _classify(self, commands: Sequence[str]) -> None:
-        if commands:
-            images = [canonical(text) for text in commands]
-            found = meant_by(self._classifier, self._encoder, [image for image, _ in images])
-            for text, one, (_, mirrored) in zip(commands, found, images, strict=True):
-                self._classified[text] = _seen_in_mirror(Meant(*one)) if mirrored else Meant(*one)
+        images = [canonical(text) for text in commands]
+        found = meant_by(self._classifier, self._encoder, [image for image, _ in images])
+        for text, one, (_, mirrored) in zip(commands, found, images, strict=True):
+            self._classified[text] = _seen_in_mirror(Meant(*one)) if mirrored else Meant(*one)
 
     def _states(self, sentence: str, meant: Meant | None = None) -> _Encoded:
         """States of a sentence, which means `meant` if that is given."""

@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mmm_core.language.commands import Reading
-from mmm_core.language.plain_gestures import OUTSIDE, SURE, Meant, is_gesture
+from mmm_core.language.plain_gestures import OUTSIDE, SURE, Meant, family_of, is_gesture
 from mmm_core.language.said_at_once import asks_again
 from mmm_core.language.sure_reading import unknown_commands
 from mmm_core.language.word_tables import lines, pairs
@@ -41,7 +41,7 @@ EVIDENCE = (
     "in turn, said",  # whether it has several steps, and the sentence has words for that
     "nothing",  # whether it has no command
 )
-"""What may speak for a candidate or against it, in the order of the columns of `evidence`."""
+"""The kinds of evidence for or against a candidate, in the order of the columns of `evidence`."""
 _AT_ONCE = re.compile(
     r"\b(?:at once|at the (?:very )?same (?:time|moment|instant)|same time|simultaneous\w*|together|concurrent\w*|meanwhile|while|"
     r"whilst|as you|in (?:the )?one (?:go|move|shot)|all in one|both|in a single \w+|during)\b"
@@ -66,15 +66,13 @@ class Candidate:
         reading: the reading.
         by_rules: whether the rules read it so.
         sure_rules: whether these are sure of the division.
-        likeliest: whether the tagger's likeliest division is read so.
         in_sentence: logarithm of the least probability of a gesture among the marked commands, in their sentence.
-        log_share: logarithm of the probability of its division, relative to the likeliest one.
+        log_share: logarithm of the probability of its division, relative to the likeliest one, for which it is 0.
     """
 
     reading: Reading
     by_rules: bool = False
     sure_rules: bool = False
-    likeliest: bool = False
     in_sentence: float = 0.0
     log_share: float = _NO_TAGS
 
@@ -111,13 +109,12 @@ def merged(candidates: Iterable[Candidate]) -> list[Candidate]:
             continue
         likelier = max(same, one, key=lambda candidate: candidate.log_share)
         found[key] = Candidate(
-            same.reading if same.reading.denied or not one.reading.denied else replace(same.reading, denied=one.reading.denied),
+            replace(same.reading, denied=same.reading.denied or one.reading.denied),
             same.by_rules or one.by_rules,
             same.sure_rules or one.sure_rules,
-            same.likeliest or one.likeliest,
             likelier.in_sentence,
             likelier.log_share,
-        )  # fmt: skip
+        )
     return list(found.values())
 
 
@@ -127,7 +124,7 @@ def commands_of(candidates: Iterable[Candidate]) -> list[str]:
 
 
 def evidence(ways: Ways) -> NDArray[np.float64]:
-    """What speaks for each of N candidates, (N, len(EVIDENCE))."""
+    """The evidence for each of N candidates, an array (N, len(EVIDENCE))."""
     in_divisions = _in_divisions(ways)
     return np.array([_evidence(one, ways, in_divisions) for one in ways.candidates])
 
@@ -160,13 +157,13 @@ def _evidence(one: Candidate, ways: Ways, in_divisions: Mapping[str, float]) -> 
         for c in commands
     ]
     names = [meant[command].name for command in commands]
-    families = {_family(name) for name in names if is_gesture(name)}
+    families = {family_of(name) for name in names if is_gesture(name)}
     several = len(commands) > 1
     one_step = several and len(one.reading.steps) == 1
     return [
         one.by_rules,
         one.sure_rules,
-        one.likeliest,
+        one.log_share == 0,
         sum(logs),
         sum(logs) / max(len(logs), 1),
         min(logs, default=0.0),
@@ -194,7 +191,7 @@ def _in_divisions(ways: Ways) -> dict[str, float]:
         unknown = set(unknown_commands(one.reading))
         said = [command.text for step in one.reading.steps for command in step]
         for family in {
-            _family(meant[c].name)
+            family_of(meant[c].name)
             for c in said
             if is_gesture(meant[c].name) and (c not in unknown or meant[c].probability >= SURE)
         }:
@@ -208,10 +205,6 @@ def _is_task(command: str, meant: Meant) -> bool:
     return is_no_gesture and command.lower().partition(" ")[0] in lines("task_verbs")
 
 
-def _family(gesture: str) -> str:
-    return gesture.partition("/")[0]
-
-
 def _log(meant: Meant) -> float:
     """Logarithm of the probability of a gesture."""
     return math.log(max(meant.probability if is_gesture(meant.name) else 0.0, _LEAST))
@@ -220,4 +213,6 @@ def _log(meant: Meant) -> float:
 @cache
 def _weights() -> NDArray[np.float64]:
     weights = dict(pairs("choice"))
-    return np.array([float(weights[name]) for name in EVIDENCE])
+    return np.array(
+        [float(weights.get(name, 0)) for name in EVIDENCE]
+    )  # a new kind has no weight before `mmmd train choice`

@@ -113,6 +113,11 @@ def plain_command(gesture: str, said: str) -> str:
     return f"{command} {count} times" if count > 1 else f"{command} once"
 
 
+def family_of(gesture: str) -> str:
+    """The family of a gesture: "look" of "look/up left"."""
+    return gesture.partition("/")[0]
+
+
 def gesture_of(command: str) -> str:
     """The gesture whose plain command this is, with whatever arm and number of strokes; empty for other words."""
     return _by_command().get(_COUNT.sub("", command), "")

@@ -44,7 +44,7 @@ _IS_LEFT_OVER = re.compile(r"(?:,? (?:with|and|while|as|then|but|so))+$")
 _ALL = re.compile(r"^(?:all(?: of (?:it|them|that))?|both|everything|each)\b ?")
 
 
-def read_marked(text: str, marked: MarkedCommands, meant: Sequence[Meant] = ()) -> Reading:
+def reading_of(text: str, marked: MarkedCommands, meant: Sequence[Meant] = ()) -> Reading:
     """The marked commands of a text, each completed and read by the rules or said as it is meant.
 
     Args:

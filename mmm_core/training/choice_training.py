@@ -25,7 +25,7 @@ from mmm_core.generate.sentence_reader import SentenceReader
 from mmm_core.language.candidates import EVIDENCE, Ways, evidence
 from mmm_core.language.commands import PlainCommand, Reading
 from mmm_core.language.known_phrases import significant_words
-from mmm_core.language.plain_gestures import Meant, gestures, is_gesture, plain_command
+from mmm_core.language.plain_gestures import Meant, family_of, gestures, is_gesture, plain_command
 
 SETS = ("words_dev", "words_dev_2", "words_test_1", "words_test_2", "words_test_3")
 """Sets of sentences that were looked at; `words_test` is none of them."""
@@ -137,7 +137,7 @@ def families_of(text: str, meant: Meant) -> frozenset[str]:
     if known := _families().get(_key(_COUNT.sub("", text))):
         return known
     is_likely = is_gesture(meant.name) and meant.probability >= _LIKELY
-    return frozenset({meant.name.partition("/")[0]} if is_likely else ())
+    return frozenset({family_of(meant.name)} if is_likely else ())
 
 
 @cache

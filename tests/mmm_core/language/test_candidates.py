@@ -13,6 +13,7 @@ from mmm_core.language.commands import PlainCommand, Reading
 from mmm_core.language.limbs import limbs_of
 from mmm_core.language.manner import Manner
 from mmm_core.language.plain_gestures import OUTSIDE, SEVERAL, Meant
+from mmm_core.language.word_tables import pairs
 
 MEANT = {
     "clap": Meant("clap", 0.99),
@@ -36,12 +37,12 @@ def _evidence(*candidates: Candidate, whole: Meant = Meant(SEVERAL, 0.9)) -> lis
 def test_candidates_with_the_same_commands_are_one() -> None:
     quick = _candidate([["clap"]], log_share=-2.0, in_sentence=-1.0)
     quick = replace(quick, reading=replace(quick.reading, steps=((PlainCommand("clap", Manner(tempo=1.6)),),)))
-    other = _candidate([["clap"]], by_rules=True, likeliest=True, log_share=-0.5, in_sentence=-0.1)
+    other = _candidate([["clap"]], by_rules=True, log_share=-0.5, in_sentence=-0.1)
     other = replace(other, reading=replace(other.reading, denied=("bow",)))
     (found,) = merged([quick, other])
     assert found.reading.steps == quick.reading.steps, "the first gives the manner"
     assert found.reading.denied == ("bow",), "what one of them denies is denied"
-    assert (found.by_rules, found.likeliest, found.log_share, found.in_sentence) == (True, True, -0.5, -0.1)
+    assert (found.by_rules, found.log_share, found.in_sentence) == (True, -0.5, -0.1)
 
 
 def test_commands_at_once_are_the_same_in_any_order_and_others_are_not() -> None:
@@ -70,6 +71,17 @@ def test_evidence(steps: list[list[str]], text: str, found: dict[str, float]) ->
     assert {name: row[name] for name in found} == pytest.approx(found)
 
 
+def test_the_division_without_a_likelier_one_is_the_likeliest() -> None:
+    one, two, rules = _evidence(
+        _candidate([["clap"]], log_share=0.0), _candidate([["nod your head"]], log_share=-0.5), _candidate([[]])
+    )
+    assert (one["likeliest tags"], two["likeliest tags"], rules["likeliest tags"]) == (1, 0, 0)
+
+
+def test_each_kind_of_evidence_has_a_weight() -> None:
+    assert tuple(name for name, _ in pairs("choice")) == EVIDENCE
+
+
 def test_what_likely_divisions_lack_is_unlikely() -> None:
     clap = _candidate([["clap"]], log_share=0.0)
     both = _candidate([["clap"], ["bow politely"]], log_share=float(np.log(1 / 3)))
@@ -91,12 +103,12 @@ def test_the_least_likely_command_counts_in_its_sentence() -> None:
 
 def test_a_reading_whose_commands_are_gestures_is_chosen() -> None:
     doubtful = _candidate([["clap"], ["the whole shebang"]], "clap, the whole shebang", by_rules=True)
-    right = _candidate([["clap"]], "clap, the whole shebang", likeliest=True, log_share=0.0)
+    right = _candidate([["clap"]], "clap, the whole shebang", log_share=0.0)
     assert chosen(Ways([doubtful, right], MEANT, Meant("clap", 0.8))) == right.reading
 
 
 def test_one_command_without_manner_takes_that_of_another_candidate() -> None:
-    best = _candidate([["clap"]], likeliest=True, log_share=0.0)
+    best = _candidate([["clap"]], log_share=0.0)
     quick = _candidate([["wiggle it"]])
     quick = replace(quick, reading=replace(quick.reading, steps=((PlainCommand("wiggle it", Manner(tempo=1.6)),),)))
     found = chosen(Ways([best, quick], MEANT, Meant("clap", 0.8)))

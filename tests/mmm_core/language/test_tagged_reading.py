@@ -6,19 +6,19 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from mmm_core.corpus import marked_sentences
+from mmm_core.corpus.marked_sentences import read_marked
 from mmm_core.language.asides import without_asides
 from mmm_core.language.commands import PlainCommand, Reading
 from mmm_core.language.plain_gestures import OUTSIDE, Meant
 from mmm_core.language.reading import read
 from mmm_core.language.sure_reading import is_sure
-from mmm_core.language.tagged_reading import can_be_read, read_marked, without_splits
+from mmm_core.language.tagged_reading import can_be_read, reading_of, without_splits
 from mmm_core.language.tagged_words import TAGS, marked_commands, words_of
 
 
 def _reading(marked: str, *meant: str) -> Reading:
-    sentence, tags = marked_sentences.read_marked(marked)
-    return read_marked(sentence, marked_commands(sentence, tags), [Meant(name, 0.95) for name in meant])
+    sentence, tags = read_marked(marked)
+    return reading_of(sentence, marked_commands(sentence, tags), [Meant(name, 0.95) for name in meant])
 
 
 def _read(marked: str, *meant: str) -> tuple[list[list[str]], tuple[str, ...]]:
@@ -111,7 +111,7 @@ def test_any_text_with_any_tags_is_read(sentence: str, data: st.DataObject) -> N
     n_words = len(words_of(sentence))
     marked = marked_commands(sentence, data.draw(st.lists(st.sampled_from(TAGS), min_size=n_words, max_size=n_words)))
     if can_be_read(marked):
-        reading = read_marked(sentence, marked)
+        reading = reading_of(sentence, marked)
         assert reading.text == sentence
         assert [len(step) for step in reading.steps] == [len(step) for step in marked.steps]
         assert reading.denied == marked.denied
