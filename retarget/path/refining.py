@@ -144,7 +144,7 @@ class Refiner:
         some = np.flatnonzero(_rank(pose, room_m) < _MOST_PAIRS)
         some = some[np.argsort(pose[some] % N, kind="stable")]
         point, is_frame = pose[some] % N, pose[some] < N
-        share = np.where(is_frame[:, None], 0.5, (0.0, 1.0))
+        share = np.where(is_frame[:, None], 0.5, (0.875, 0.125))
         share[point == 0, 0] = 0.0  # the point before it is fixed
         return Rooms(point, share, near.grows(some)[:, self._joints], room_m[some] - more_m[point], _STIFFNESS)
 
