@@ -105,6 +105,10 @@ class BlockPlanner:
             path, hit, least = self._limited(eased, posed, before, begin, period, keep, settle, allowed, least)
         if hit.any():
             path = self._stop_before_contact(path, hit, period, allowed)
+        elif interventions and self._refiner and shown:
+            better = self._refined(self._refiner, path, shown, len(posed), period, keep, settle, allowed, least, is_free=True)
+            if better is not None and better[1] < 0:
+                path = better[0]
         if around is not None and self._distance(around, posed) < self._distance(path, posed):
             return around, stretches(touching)
         return path, interventions
@@ -116,7 +120,7 @@ class BlockPlanner:
 
     def _refined(
         self, refiner: Refiner, path: Array, shown: Shown, n_frames: int, period: float, keep: int, settle: bool,
-        allowed: Allowed | None, least: LeastDistances,
+        allowed: Allowed | None, least: LeastDistances, *, is_free: bool = False,
     ) -> tuple[Array, float] | None:  # fmt: skip
         """A path without contact near the limiter's `path`, and the increase of a frame's cost; None if none was found."""
         stop = braking(path, period, self._limits)
@@ -140,7 +144,9 @@ class BlockPlanner:
             hit[n - 1] |= of_path[n:].any()
             return hit
 
-        found = refiner.refine(start, shown, n_frames, period, touching, least)
+        # The next block replaces what is after `keep`.
+        n_needed = keep if keep < n_frames else len(start) - 2
+        found = refiner.refine(start, shown, n_frames, period, touching, least, n_needed, is_free=is_free)
         if found is None:
             return None
         control, worse = found

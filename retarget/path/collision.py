@@ -182,7 +182,7 @@ class SelfContact(PairSlopes):
             if len(new):
                 # No two sections but those of different pairs begin in the same pose.
                 _, one, of = np.unique(sections.ends[0, new], return_index=True, return_inverse=True)
-                q_rad = _spline(control_rad, sections.segment[new[one]], sections.u[:, new[one]].mean(0))
+                q_rad = spline(control_rad, sections.segment[new[one]], sections.u[:, new[one]].mean(0))
                 between = self._placed(q_rad, with_joints=False)
                 found = self._measure(between, of, sections.pair[new])
                 pose[new], distance_m[new], way[new] = len(centre) + of, found.distance_m, found.way
@@ -255,7 +255,7 @@ class SelfContact(PairSlopes):
         return np.where(both, 0.0, np.maximum(reach[a], reach[b]))
 
 
-def _spline(control: Array, segment: Indices, u: Array) -> Array:
+def spline(control: Array, segment: Indices, u: Array) -> Array:
     """(n, J) places on segments of a quadratic spline."""
     c0, c1, c2 = control[segment], control[segment + 1], control[segment + 2]
     u = u[:, None]

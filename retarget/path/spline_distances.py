@@ -20,7 +20,7 @@ class Seen:
 
     Attributes:
         control_rad: (N + 2, J) control points of the spline.
-        near: near pairs in its N frames, the borders of its segments after the first, and in the N middles of the segments.
+        near: near pairs in its N frames, the borders of its segments after the first, in the N middles of the segments, and perhaps in more poses.
     """
 
     control_rad: Array
@@ -65,7 +65,8 @@ class SplineDistances:
         """Distances on the first `shared` segments as seen, and bounds (n, P) at the n other borders in `others`."""
         near, n, N = seen.near, len(least_m), len(seen.control_rad) - 2
         frames = np.arange(shared, dtype=np.int64)
-        border = np.concatenate([[2 * N], frames, np.arange(2 * N + 1, 2 * N + n)])
+        others_at = len(near.least_m) + np.arange(n, dtype=np.int64)
+        border = np.concatenate([others_at[:1], frames, others_at[1:]])
         middle = np.full(len(border) - 1, -1, np.int64)
         middle[:shared] = N + frames
         every_m = np.concatenate([near.least_m, least_m])
