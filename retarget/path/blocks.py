@@ -7,6 +7,7 @@ the distances among its bounds. A path that still touches is pushed, then drawn 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -77,22 +78,24 @@ class BlockPlanner:
         allowed = self._contact.allowed_from(least.least_m[0])
         least = least.part(slice(1, None))
         touching = self._contact.touching(least)
-        around: Array | None = None
-        if self._refiner and shown and touching.any():
+        found: list[Array] = []
+        refined = partial(self._refined, self._refiner, shown, len(posed), period, keep, settle, allowed)
+        if shown and touching.any():
             # The refined path replaces the limiter's, so contacts on the limiter's are not searched.
             eased = self._avoidance.push_a_little(posed, touching, least)
-            path = self._path(eased, posed, before, begin, period, settle)
-            better = self._refined(self._refiner, path, shown, len(posed), period, keep, settle, allowed, least)
+            better = refined(self._path(eased, posed, before, begin, period, settle), least)
             if better is not None:
-                around, worse = better
-                if worse < _MOST_WORSE:
-                    return around, stretches(touching)
+                found.append(better[0])
+                if better[1] < _MOST_WORSE:
+                    return better[0], stretches(touching)
         eased, interventions = self._avoidance.push_out(posed, begin.position_rad, least)
         path, hit, least = self._limited(eased, posed, before, begin, period, keep, settle, allowed, least)
-        if self._refiner and shown and not interventions and hit.any():
-            better = self._refined(self._refiner, path, shown, len(posed), period, keep, settle, allowed, least)
-            if better is not None and better[1] < _MOST_WORSE:
-                return better[0], stretches(hit)
+        if shown and (interventions or hit.any()):
+            better = refined(path, least, is_free=not hit.any())
+            if better is not None:
+                found.append(better[0])
+            if found and (better is None or better[1] < _MOST_WORSE):
+                return self._nearest(found, posed), interventions or stretches(hit)
         for strength in STRENGTHS:
             if not hit.any():
                 break
@@ -105,13 +108,15 @@ class BlockPlanner:
             path, hit, least = self._limited(eased, posed, before, begin, period, keep, settle, allowed, least)
         if hit.any():
             path = self._stop_before_contact(path, hit, period, allowed)
-        elif interventions and self._refiner and shown:
-            better = self._refined(self._refiner, path, shown, len(posed), period, keep, settle, allowed, least, is_free=True)
-            if better is not None and better[1] < 0:
+        elif shown and interventions:
+            better = refined(path, least, is_free=True)
+            if better is not None:
                 path = better[0]
-        if around is not None and self._distance(around, posed) < self._distance(path, posed):
-            return around, stretches(touching)
-        return path, interventions
+        return self._nearest([path, *found], posed), interventions
+
+    def _nearest(self, found: list[Array], posed: Array) -> Array:
+        """The path whose arms are nearest to poses (T, J)."""
+        return min(found, key=lambda control: self._distance(control, posed))
 
     def _distance(self, control: Array, posed: Array) -> float:
         """Sum of the squared differences of the arms' angles on a path from poses (T, J)."""
@@ -119,8 +124,8 @@ class BlockPlanner:
         return float(((frames - posed[: len(frames)])[:, self._arms] ** 2).sum())
 
     def _refined(
-        self, refiner: Refiner, path: Array, shown: Shown, n_frames: int, period: float, keep: int, settle: bool,
-        allowed: Allowed | None, least: LeastDistances, *, is_free: bool = False,
+        self, refiner: Refiner, shown: Shown, n_frames: int, period: float, keep: int, settle: bool,
+        allowed: Allowed | None, path: Array, least: LeastDistances, *, is_free: bool = False,
     ) -> tuple[Array, float] | None:  # fmt: skip
         """A path without contact near the limiter's `path`, and the increase of a frame's cost; None if none was found."""
         stop = braking(path, period, self._limits)
