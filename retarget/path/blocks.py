@@ -7,7 +7,7 @@ the distances among its bounds. A path that still touches is pushed, then drawn 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from functools import partial
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,7 +19,7 @@ from retarget.path.least_distances import LeastDistances
 from retarget.path.limit_path import SETTLED_RAD, Objective, kept
 from retarget.path.limits import JointLimits
 from retarget.path.paths import JointState
-from retarget.path.refining import Refiner, Shown
+from retarget.path.refining import Refiner, Shown, best_of
 from retarget.path.spline_distances import Seen
 
 Array = NDArray[np.float64]
@@ -37,6 +37,31 @@ that began deep in a contact may lead far round it: paths of recordings cost 0.0
 missed ones 0.04 to 0.5."""
 _AROUND_CUT = 3
 """Frames on both sides of the end of a block that change where braking from this end touches."""
+
+
+@dataclass(frozen=True)
+class _Task:
+    """One block to be planned.
+
+    Attributes:
+        posed: (T, J) poses that the path is to show.
+        before: (1, J) the pose before them.
+        shown: the cost of these frames; None where the path must be ready sooner and is not refined.
+        begin: state in which the path begins.
+        period: seconds between frames.
+        keep: frames after which the path may end by braking.
+        settle: whether the path ends at rest.
+        allowed: distances that a path from within a margin keeps.
+    """
+
+    posed: Array
+    before: Array
+    shown: Shown | None
+    begin: JointState
+    period: float
+    keep: int
+    settle: bool
+    allowed: Allowed | None
 
 
 class BlockPlanner:
@@ -71,77 +96,92 @@ class BlockPlanner:
         """Control points for poses (T, J), with free braking after `keep` frames, and the number of interventions.
 
         When `continued`, the first pose is the one before the block. `shown` is the cost of the block's frames; with None the
-        path is ready sooner but is not refined near contacts.
+        path is ready sooner but is not refined near contacts. What comes after `keep` frames may touch: it is only a view ahead.
         """
         before, posed = (posed[:1], posed[1:]) if continued else (posed[:1], posed)
         least = self._contact.least(np.concatenate([begin.position_rad[None], posed]))
         allowed = self._contact.allowed_from(least.least_m[0])
+        task = _Task(posed, before, shown if self._refiner else None, begin, period, keep, settle, allowed)
         least = least.part(slice(1, None))
         touching = self._contact.touching(least)
         found: list[Array] = []
-        refined = partial(self._refined, self._refiner, shown, len(posed), period, keep, settle, allowed)
-        if shown and touching.any():
+        if touching.any() and task.shown:
             # The refined path replaces the limiter's, so contacts on the limiter's are not searched.
-            eased = self._avoidance.push_a_little(posed, touching, least)
-            better = refined(self._path(eased, posed, before, begin, period, settle), least)
+            path = self._path(task, self._avoidance.push_a_little(posed, touching, least))
+            better = self._refined(task, path, least)
             if better is not None:
                 found.append(better[0])
                 if better[1] < _MOST_WORSE:
                     return better[0], stretches(touching)
         eased, interventions = self._avoidance.push_out(posed, begin.position_rad, least)
-        path, hit, least = self._limited(eased, posed, before, begin, period, keep, settle, allowed, least)
-        if shown and (interventions or hit.any()):
-            better = refined(path, least, is_free=not hit.any())
+        path, hit, least = self._limited(task, eased, least)
+        if interventions or hit.any():
+            better = self._refined(task, path, least, is_free=not hit.any())
             if better is not None:
                 found.append(better[0])
-            if found and (better is None or better[1] < _MOST_WORSE):
-                return self._nearest(found, posed), interventions or stretches(hit)
+                if better[1] < _MOST_WORSE:
+                    return self._nearest(task, found), interventions or stretches(hit)
+        if hit.any():
+            path, more = self._pushed(task, eased, path, hit, least)
+            interventions += more
+        return self._nearest(task, [path, *found]), interventions
+
+    def _pushed(
+        self, task: _Task, eased: Array, path: Array, hit: NDArray[np.bool_], least: LeastDistances
+    ) -> tuple[Array, int]:
+        """A path without contact, from a path that touches in `hit`, and the number of interventions."""
+        interventions = 0
         for strength in STRENGTHS:
-            if not hit.any():
-                break
             interventions += stretches(hit)
             eased = self._avoidance.push(eased, path, hits_of_frames(hit, len(path)), strength)
-            path, hit, least = self._limited(eased, posed, before, begin, period, keep, settle, allowed, least)
-        if hit.any() and allowed is not None:  # the start is within the margin and blocks the motion: first leave it
+            path, hit, least = self._limited(task, eased, least)
+            if not hit.any():
+                break
+        begin_rad = task.begin.position_rad
+        if (
+            hit.any() and task.allowed is not None
+        ):  # the start is within the margin and blocks the motion: first leave it
             eased = eased.copy()
-            eased[:_AWAY_FRAMES] = self._avoidance.push_out(begin.position_rad[None], begin.position_rad)[0]
-            path, hit, least = self._limited(eased, posed, before, begin, period, keep, settle, allowed, least)
+            eased[:_AWAY_FRAMES] = self._avoidance.push_out(begin_rad[None], begin_rad)[0]
+            path, hit, least = self._limited(task, eased, least)
         if hit.any():
-            path = self._stop_before_contact(path, hit, period, allowed)
-        elif shown and interventions:
-            better = refined(path, least, is_free=True)
-            if better is not None:
-                path = better[0]
-        return self._nearest([path, *found], posed), interventions
+            return self._stop_before_contact(path, hit, task.period, task.allowed), interventions
+        better = self._refined(task, path, least, is_free=True)
+        return (path if better is None else better[0]), interventions
 
-    def _nearest(self, found: list[Array], posed: Array) -> Array:
-        """The path whose arms are nearest to poses (T, J)."""
-        return min(found, key=lambda control: self._distance(control, posed))
+    def _nearest(self, task: _Task, found: list[Array]) -> Array:
+        """The path whose arms are nearest to the poses."""
 
-    def _distance(self, control: Array, posed: Array) -> float:
-        """Sum of the squared differences of the arms' angles on a path from poses (T, J)."""
-        frames = (control[1:-1] + control[2:])[: len(posed)] / 2
-        return float(((frames - posed[: len(frames)])[:, self._arms] ** 2).sum())
+        def distance(control: Array) -> float:
+            frames = (control[1:-1] + control[2:])[: len(task.posed)] / 2
+            return float(((frames - task.posed[: len(frames)])[:, self._arms] ** 2).sum())
+
+        return min(found, key=distance)
 
     def _refined(
-        self, refiner: Refiner, shown: Shown, n_frames: int, period: float, keep: int, settle: bool,
-        allowed: Allowed | None, path: Array, least: LeastDistances, *, is_free: bool = False,
-    ) -> tuple[Array, float] | None:  # fmt: skip
-        """A path without contact near the limiter's `path`, and the increase of a frame's cost; None if none was found."""
+        self, task: _Task, path: Array, least: LeastDistances, *, is_free: bool = False
+    ) -> tuple[Array, float] | None:
+        """A path without contact near the limiter's `path`, and the increase of a frame's cost; None if none was found.
+
+        With `is_free` that path is without contact itself, and of the free paths near it the best is found.
+        """
+        if not (task.shown and self._refiner):
+            return None
+        n_frames, period, keep = len(task.posed), task.period, task.keep
         stop = braking(path, period, self._limits)
-        tail = max(len(stop), _SETTLE_FRAMES if settle else self._braking_frames(period))
+        tail = max(len(stop), _SETTLE_FRAMES if task.settle else self._braking_frames(period))
         end = stop[-1:] if len(stop) else path[-1:]
         start = np.concatenate([path, stop, np.repeat(end, tail - len(stop), 0)])
 
         def cut(control: Array) -> Array:
-            return self._settled(control, n_frames + 2, period) if settle else control[: n_frames + 2]
+            return self._settled(control, n_frames + 2, period) if task.settle else control[: n_frames + 2]
 
         def touching(control: Array, least: LeastDistances, seen: Seen) -> NDArray[np.bool_]:
             found, hit = cut(control), np.zeros(len(control) - 2, bool)
-            if settle:
-                of_path, _ = self._contact.along_near(found, allowed, least, seen)
+            if task.settle:
+                of_path, _ = self._contact.along_near(found, task.allowed, least, seen)
             else:
-                of_path, _ = self._cut_hits(found, period, keep, n_frames, allowed, least, seen)
+                of_path, _ = self._cut_hits(task, found, least, seen)
                 if keep < n_frames and of_path[keep - 1]:
                     hit[max(keep - _AROUND_CUT, 0) : keep + _AROUND_CUT] = True
             n = min(len(hit), len(of_path))
@@ -149,9 +189,9 @@ class BlockPlanner:
             hit[n - 1] |= of_path[n:].any()
             return hit
 
-        # The next block replaces what is after `keep`.
         n_needed = keep if keep < n_frames else len(start) - 2
-        found = refiner.refine(start, shown, n_frames, period, touching, least, n_needed, is_free=is_free)
+        paths = self._refiner.free_paths(start, task.shown, n_frames, period, touching, least, n_needed)
+        found = best_of(paths) if is_free else next(paths, None)
         if found is None:
             return None
         control, worse = found
@@ -164,16 +204,16 @@ class BlockPlanner:
         return int(np.ceil((limits.velocity_rad_s / (limits.acceleration_rad_s2 * period)).max())) + 1
 
     def _cut_hits(
-        self, points: Array, period: float, keep: int, n_frames: int, allowed: Allowed | None, least: LeastDistances,
-        seen: Seen | None = None,
-    ) -> tuple[NDArray[np.bool_], LeastDistances]:  # fmt: skip
+        self, task: _Task, points: Array, least: LeastDistances, seen: Seen | None = None
+    ) -> tuple[NDArray[np.bool_], LeastDistances]:
         """Segments that touch when the path brakes at its end or after `keep` frames, and bounds of the distances on the path."""
+        keep, period = task.keep, task.period
         whole = np.concatenate([points, braking(points, period, self._limits)])
-        hit, least = self._contact.along_near(whole, allowed, least, seen)
-        if keep < n_frames:
+        hit, least = self._contact.along_near(whole, task.allowed, least, seen)
+        if keep < len(task.posed):
             cut = points[: keep + 2]
             stop = np.concatenate([cut[-2:], braking(cut, period, self._limits)])
-            hit[keep - 1] |= self._contact.along_near(stop, allowed, least.part(slice(keep, None)))[0].any()
+            hit[keep - 1] |= self._contact.along_near(stop, task.allowed, least.part(slice(keep, None)))[0].any()
         return hit, least
 
     def _settled(self, points: Array, least: int, period: float) -> Array:
@@ -197,38 +237,33 @@ class BlockPlanner:
             back *= 2
 
     def _limited(
-        self, eased: Array, posed: Array, pose_before: Array, start: JointState, period: float, keep: int, settle: bool,
-        allowed: Allowed | None, least: LeastDistances,
-    ) -> tuple[Array, NDArray[np.bool_], LeastDistances]:  # fmt: skip
+        self, task: _Task, eased: Array, least: LeastDistances
+    ) -> tuple[Array, NDArray[np.bool_], LeastDistances]:
         """`_path`, its touching segments, and bounds of distances.
 
         Contacts while braking after `keep` frames or at the end count too, but for a path that settles.
         """
-        settled_rad = _PUSHED_SETTLED_RAD if np.any(eased != posed) else SETTLED_RAD
-        points = self._path(eased, posed, pose_before, start, period, settle, settled_rad)
-        if settle:
-            return points, *self._contact.along_near(points, allowed, least)
-        return points, *self._cut_hits(points, period, keep, len(eased), allowed, least)
+        settled_rad = _PUSHED_SETTLED_RAD if np.any(eased != task.posed) else SETTLED_RAD
+        points = self._path(task, eased, settled_rad)
+        if task.settle:
+            return points, *self._contact.along_near(points, task.allowed, least)
+        return points, *self._cut_hits(task, points, least)
 
-    def _path(
-        self, eased: Array, posed: Array, pose_before: Array, start: JointState, period: float, settle: bool,
-        settled_rad: float = SETTLED_RAD,
-    ) -> Array:  # fmt: skip
+    def _path(self, task: _Task, eased: Array, settled_rad: float = SETTLED_RAD) -> Array:
         """Control points of a path near `eased` (T, J) that keeps every limit.
 
-        The differences of `eased` from `posed` have the largest weight. When settling, the last pose is held until reached.
+        The differences of `eased` from the poses have the largest weight. When settling, the last pose is held until reached.
         """
-        wanted, shown, led = controls_near(eased, pose_before), eased, eased - posed
-        half = start.velocity_rad_s * (period / 2)
-        before, position = start.position_rad - half, start.position_rad + half
-        if settle:
+        wanted, shown, led = controls_near(eased, task.before), eased, eased - task.posed
+        half = task.begin.velocity_rad_s * (task.period / 2)
+        before, position = task.begin.position_rad - half, task.begin.position_rad + half
+        if task.settle:
             every = (wanted, shown, led)
             wanted, shown, led = (np.concatenate([x, np.repeat(x[-1:], _SETTLE_FRAMES, 0)]) for x in every)
 
         def objective_from(k: int) -> Objective:
             return self._objective(shown[k:], led[k:])
 
-        points = np.concatenate(
-            [[before], joined(wanted, before, position, period, self._limits, objective_from, settled_rad)]
-        )
-        return self._settled(points, len(points) - _SETTLE_FRAMES, period) if settle else points
+        rest = joined(wanted, before, position, task.period, self._limits, objective_from, settled_rad)
+        points = np.concatenate([[before], rest])
+        return self._settled(points, len(points) - _SETTLE_FRAMES, task.period) if task.settle else points

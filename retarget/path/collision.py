@@ -14,6 +14,7 @@ from retarget.path.distances import MARGIN_M, Array, Indices, Placed
 from retarget.path.least_distances import LeastDistances
 from retarget.path.slopes import PairSlopes
 from retarget.path.spline_distances import Seen, SplineDistances
+from retarget.path.spline_places import on_spline
 from retarget.robot.description import mujoco
 from retarget.robot.robot import RobotModel
 
@@ -182,7 +183,7 @@ class SelfContact(PairSlopes):
             if len(new):
                 # No two sections but those of different pairs begin in the same pose.
                 _, one, of = np.unique(sections.ends[0, new], return_index=True, return_inverse=True)
-                q_rad = spline(control_rad, sections.segment[new[one]], sections.u[:, new[one]].mean(0))
+                q_rad = on_spline(control_rad, sections.segment[new[one]], sections.u[:, new[one]].mean(0))
                 between = self._placed(q_rad, with_joints=False)
                 found = self._measure(between, of, sections.pair[new])
                 pose[new], distance_m[new], way[new] = len(centre) + of, found.distance_m, found.way
@@ -253,13 +254,6 @@ class SelfContact(PairSlopes):
         a, b = self._pairs.T
         both = self._above[model.geom_bodyid[a]] == self._above[model.geom_bodyid[b]]
         return np.where(both, 0.0, np.maximum(reach[a], reach[b]))
-
-
-def spline(control: Array, segment: Indices, u: Array) -> Array:
-    """(n, J) places on segments of a quadratic spline."""
-    c0, c1, c2 = control[segment], control[segment + 1], control[segment + 2]
-    u = u[:, None]
-    return (c0 + c1) / 2 + (c1 - c0) * u + (c2 - 2 * c1 + c0) * (u * u / 2)
 
 
 def _on_lines(points: Array, u: Array) -> Array:

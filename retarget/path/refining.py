@@ -7,18 +7,18 @@ Nocedal, Wright 2006, section 18.5).
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator
 
 import numpy as np
 from numpy.typing import NDArray
 
 from retarget.path.arm_program import ArmProgram, Frames, Rooms, Steady
-from retarget.path.collision import KEPT, SelfContact, spline
+from retarget.path.collision import KEPT, SelfContact
 from retarget.path.least_distances import LeastDistances
 from retarget.path.limits import JointLimits
 from retarget.path.slopes import NearPairs
 from retarget.path.spline_distances import Seen
+from retarget.path.spline_places import SplinePlaces, on_spline
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
@@ -33,9 +33,8 @@ _MOST_PAIRS = 8
 """Number of nearest pairs of each pose that are part of the program."""
 _AIM_M = 0.001
 """Metres beyond the margin that poses keep, a reserve for the error of the linearisation."""
-_WITHIN = (0.125, 0.25, 0.375, 0.625, 0.75, 0.875)
-"""Places in a segment that are measured too once the proof has failed in it: what passes through each other between a frame
-and the middle shows only there."""
+_LEAST_GAIN = 1e-3
+"""Decrease of a frame's mean cost by a round below which a free path is not improved further."""
 _MORE_M = 0.0015
 """Additional metres that poses keep where the path of the previous round touched."""
 _BETWEEN_M = (1 - KEPT) * 0.010
@@ -64,7 +63,7 @@ class Refiner:
     def __init__(self, contact: SelfContact, limits: JointLimits, joints: Indices) -> None:
         self._contact, self._limits, self._joints = contact, limits, joints
 
-    def refine(
+    def free_paths(
         self,
         control_rad: Array,
         shown: Shown,
@@ -73,10 +72,8 @@ class Refiner:
         touching: Touching,
         least: LeastDistances,
         n_needed: int,
-        *,
-        is_free: bool = False,
-    ) -> tuple[Array, float] | None:
-        """Control points without contact and the mean increase of a frame's cost by them; None if none were found.
+    ) -> Iterator[tuple[Array, float]]:
+        """Yields control points without contact, and the mean increase of a frame's cost by them, after each round that has them.
 
         Args:
             control_rad: (N, J) initial control points; the first two, and joints outside the arms, do not change. At the end
@@ -86,45 +83,43 @@ class Refiner:
             period_s: seconds between control points.
             touching: gives the touching ones of N - 2 segments, for control points and bounds of distances in their frames.
             least: bounds of distances in frames near those of `control_rad`.
-            n_needed: segments that have to be free; contacts in later ones are allowed where no round avoids them.
+            n_needed: first segments that have to be free; after the last round contacts in later ones count no more.
         """
         control, joints, N = control_rad.copy(), self._joints, len(control_rad) - 2
         program = self._program(control, period_s)
-        more_m, worse, places = np.full(N, _AIM_M), 0.0, _Places.of(N)
-        found: tuple[Array, float] | None = None
-        for k in range(len(_TRUST_RAD) + 1):
-            near, least = self._near(control, least, places)
-            if k:
-                lacks = places.segment[near.pose[near.room_m < np.where(near.pose < N, 0.0, -_BETWEEN_M)]]
-                hit = np.isin(np.arange(N), lacks)
-                if not hit[:n_needed].any() and (k == len(_TRUST_RAD) or not hit.any()):
-                    hit = touching(control, least, Seen(control, near))
-                    places = places.and_within(np.flatnonzero(hit))
-                if not hit[: n_needed if k == len(_TRUST_RAD) else N].any():
-                    if not is_free:
-                        return control, worse / n_frames
-                    if found is not None and worse / n_frames > found[1] - 1e-3:
-                        return min(found, (control, worse / n_frames), key=lambda f: f[1])
-                    found = control.copy(), worse / n_frames
-                more_m[hit] += _MORE_M
-                more_m[:-1][hit[1:] & ~hit[:-1]] += _MORE_M
-                more_m[1:][hit[:-1] & ~hit[1:]] += _MORE_M
-            if k == len(_TRUST_RAD):
-                break
-            rooms = self._rooms(near, more_m, places)
+        more_m, worse, places = np.full(N, _AIM_M), 0.0, SplinePlaces.of(N)
+        hit: NDArray[np.bool_] = np.zeros(N, bool)
+        near, least = self._near(control, least, places)
+        for trust_rad in _TRUST_RAD:
             costs = self._costs(shown, least.q_rad, n_frames)
-            change = program.change(control[2:, joints], costs, rooms, _STEADY, _TRUST_RAD[k])
+            change = program.change(control[2:, joints], costs, self._rooms(near, more_m, places), _STEADY, trust_rad)
             if change is None:
-                break
+                return
             control[2:, joints] += change
             worse += costs.of(change)
-        return found
+            near, least = self._near(control, least, places)
+            lacks = near.pose[near.room_m < np.where(near.pose < N, 0.0, -_BETWEEN_M)]
+            hit = np.asarray(np.isin(np.arange(N), places.segment[lacks]), bool)
+            if not hit.any():
+                hit = touching(control, least, Seen(control, near))
+                places = places.and_within(np.flatnonzero(hit))
+                if not hit.any():
+                    yield control.copy(), worse / n_frames
+            more_m[hit] += _MORE_M
+            more_m[:-1][hit[1:] & ~hit[:-1]] += _MORE_M
+            more_m[1:][hit[:-1] & ~hit[1:]] += _MORE_M
+        if (
+            hit.any()
+            and not hit[:n_needed].any()
+            and not touching(control, least, Seen(control, near))[:n_needed].any()
+        ):
+            yield control, worse / n_frames
 
-    def _near(self, control: Array, least: LeastDistances, places: _Places) -> tuple[NearPairs, LeastDistances]:
+    def _near(self, control: Array, least: LeastDistances, places: SplinePlaces) -> tuple[NearPairs, LeastDistances]:
         """Near pairs in N frames and in poses between them, and bounds of distances in the frames."""
         frames = (control[1:-1] + control[2:]) / 2
         N = len(frames)
-        between = places.on(control)[N:]
+        between = on_spline(control, places.segment[N:], places.u[N:])
         within_m = np.repeat((_NEAR_M, _NEAR_M / 3), (N, len(between)))
         least_m = least.at(frames)
         of_between = LeastDistances(frames, least_m, least.sweep_m).part(places.segment[N:]).at(between)
@@ -155,7 +150,7 @@ class Refiner:
         hessian[:, range(n), range(n)] += _LEAST
         return Frames(hessian, fall)
 
-    def _rooms(self, near: NearPairs, more_m: Array, places: _Places) -> Rooms:
+    def _rooms(self, near: NearPairs, more_m: Array, places: SplinePlaces) -> Rooms:
         """Constraint rows of N frames and of poses between them."""
         some = np.flatnonzero(_rank(near.pose, near.room_m) < _MOST_PAIRS)
         some = some[np.argsort(places.segment[near.pose[some]], kind="stable")]
@@ -165,40 +160,14 @@ class Refiner:
         return Rooms(point, share, near.grows(some)[:, self._joints], near.room_m[some] - more_m[point], _STIFFNESS)
 
 
-@dataclass(frozen=True)
-class _Places:
-    """Places on a spline of N segments: first the ends of all, which are the frames, then their middles, then others.
-
-    Attributes:
-        segment: (M,) index of the segment, which is also that of its last control point after the two fixed ones.
-        u: (M,) place in the segment, 0 to 1.
-    """
-
-    segment: Indices
-    u: Array
-
-    @classmethod
-    def of(cls, n_segments: int) -> _Places:
-        """Frames and middles."""
-        return cls(np.tile(np.arange(n_segments, dtype=np.int64), 2), np.repeat((1.0, 0.5), n_segments))
-
-    def and_within(self, segments: Indices) -> _Places:
-        """These, and more in some segments."""
-        new = np.setdiff1d(segments, self.segment[np.isin(self.u, _WITHIN)])
-        return _Places(
-            np.concatenate([self.segment, np.repeat(new, len(_WITHIN))]),
-            np.concatenate([self.u, np.tile(_WITHIN, len(new))]),
-        )
-
-    def on(self, control: Array) -> Array:
-        """(M, J) the poses there, on the spline of (N + 2, J) control points."""
-        return spline(control, self.segment, self.u)
-
-    @property
-    def share(self) -> Array:
-        """(M, 2) weights of the last control point but one of the segment, that before it included, and of the last."""
-        last = self.u**2 / 2
-        return np.stack([1 - last, last], 1)
+def best_of(paths: Iterator[tuple[Array, float]]) -> tuple[Array, float] | None:
+    """The cheapest of `Refiner.free_paths`, of which no more are made once they hardly improve; None if there are none."""
+    best = next(paths, None)
+    for control, worse in paths:
+        if best is None or worse > best[1] - _LEAST_GAIN:
+            break
+        best = control, worse
+    return best
 
 
 def _rank(pose: Indices, room_m: Array) -> Indices:
