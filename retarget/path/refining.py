@@ -152,12 +152,13 @@ class Refiner:
 
     def _rooms(self, near: NearPairs, more_m: Array, places: SplinePlaces) -> Rooms:
         """Constraint rows of N frames and of poses between them."""
-        some = np.flatnonzero(_rank(near.pose, near.room_m) < _MOST_PAIRS)
-        some = some[np.argsort(places.segment[near.pose[some]], kind="stable")]
-        pose = near.pose[some]
-        point, share = places.segment[pose], places.share[pose]
+        every = places.point[near.pose]
+        some = np.flatnonzero((_rank(near.pose, near.room_m) < _MOST_PAIRS) & (every >= 0))
+        some = some[np.argsort(every[some], kind="stable")]
+        point, share = every[some], places.share[near.pose[some]]
         share[point == 0, 0] = 0.0  # the point before it is fixed
-        return Rooms(point, share, near.grows(some)[:, self._joints], near.room_m[some] - more_m[point], _STIFFNESS)
+        room_m = near.room_m[some] - more_m[places.segment[near.pose[some]]]
+        return Rooms(point, share, near.grows(some)[:, self._joints], room_m, _STIFFNESS)
 
 
 def best_of(paths: Iterator[tuple[Array, float]]) -> tuple[Array, float] | None:

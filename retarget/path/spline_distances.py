@@ -20,8 +20,8 @@ class Seen:
 
     Attributes:
         control_rad: (N + 2, J) control points of the spline.
-        near: near pairs in its N frames, which are the borders of its segments after the first, in the N middles of the segments, and
-            perhaps in more poses.
+        near: near pairs in its N frames, which are the borders of its segments after the first, in the N middles of the
+            segments, and perhaps in more poses.
     """
 
     control_rad: Array

@@ -37,13 +37,19 @@ class SplinePlaces:
         return SplinePlaces(np.concatenate([self.segment, segment]), np.concatenate([self.u, u]))
 
     @property
-    def share(self) -> Array:
-        """(M, 2) weights of the last control point but one of the segment and of the last in the pose.
+    def point(self) -> Indices:
+        """(M,) index of the later of the two control points that a pose depends on most, after the first two; -1 before those."""
+        return self.segment - (self.u < 0.5)
 
-        The control point before them has an eighth of the weight or less from the middle on; it counts as the last but one.
+    @property
+    def share(self) -> Array:
+        """(M, 2) weights in the pose of the control point before `point`, and of `point`.
+
+        A segment's pose depends on three control points. The third has at most an eighth of the weight and counts as its neighbour.
         """
-        last = self.u**2 / 2
-        return np.stack([1 - last, last], 1)
+        early, late = (1 - self.u) ** 2 / 2, self.u**2 / 2
+        first = np.where(self.point < self.segment, early, 1 - late)
+        return np.stack([first, 1 - first], 1)
 
 
 def on_spline(control: Array, segment: Indices, u: Array) -> Array:
