@@ -161,13 +161,18 @@ class Refiner:
         return Rooms(point, share, near.grows(some)[:, self._joints], room_m, _STIFFNESS)
 
 
-def best_of(paths: Iterator[tuple[Array, float]]) -> tuple[Array, float] | None:
-    """The cheapest of `Refiner.free_paths`, of which no more are made once they hardly improve; None if there are none."""
-    best = next(paths, None)
+def best_of(paths: Iterator[tuple[Array, float]], enough: float) -> tuple[Array, float] | None:
+    """The cheapest of `Refiner.free_paths`; None if there are none.
+
+    No more are made once one increases a frame's cost by less than `enough`, or is hardly cheaper than the one before.
+    """
+    best: tuple[Array, float] | None = None
     for control, worse in paths:
-        if best is None or worse > best[1] - _LEAST_GAIN:
+        if best is not None and worse > best[1] - _LEAST_GAIN:
             break
         best = control, worse
+        if worse < enough:
+            break
     return best
 
 

@@ -15,8 +15,9 @@ from tests.support.sizes import few_and_long
 
 CLAPPING = ("reference", "toddlerbot", "poppy_torso", "op3")
 """Robots whose arms are long and fast enough for a person's tempo."""
-SLOW = ("ffw_bg2", "reachy_2021")
-"""Robots that come together and part as often, but not to the last centimetre. OP2's hands stay 0.1 m apart."""
+SLOW = {"ffw_bg2": 0.02, "reachy_2021": 0.15}
+"""Robots that come together and part as often, by the metres by which they part; more is not in the reach of the shoulders of AI
+Worker, which turn at 2 rad/s. OP2's hands stay 0.1 m apart."""
 
 
 @pytest.fixture(scope="module")
@@ -48,7 +49,7 @@ def test_a_slow_robot_comes_together_as_often(name: str, retargeters: dict[str, 
     motion = gesture("clap", count=3)
     closed_m, open_m = claps_m(retargeters[name], motion, retargeters[name].retarget(motion))
     assert len(closed_m) == 3
-    assert max(closed_m) < 0.04 and min(open_m) > 0.07
+    assert max(closed_m) < 0.015 and min(open_m) > SLOW[name]
 
 
 @pytest.mark.long

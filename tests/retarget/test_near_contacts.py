@@ -17,7 +17,7 @@ Array = NDArray[np.float64]
 _N, _MOVED_RAD = 6, 1e-4
 
 
-def test_the_shares_of_a_place_are_what_its_pose_takes_of_the_control_points() -> None:
+def test_shares_of_a_place_are_what_its_pose_takes_of_control_points() -> None:
     places = SplinePlaces.of(_N).and_within(np.array([0, 4]))
     assert len(places.u) == 2 * _N + 2 * 6
     assert len(places.and_within(np.array([0])).u) == len(places.u), "no place is taken twice"
