@@ -7,6 +7,7 @@ is inherited as long as it only grows shallower, and is counted by itself.
 
 from __future__ import annotations
 
+import threading
 from array import array
 from collections.abc import Callable
 from itertools import pairwise
@@ -30,7 +31,7 @@ _MAX_DETAILS = 20
 
 
 class ContactAudit:
-    """Collects poses of one robot and checks them later, all at once.
+    """Collects poses of one robot and checks them later, all at once; one thread may collect while another checks.
 
     Args:
         robot: the robot.
@@ -52,6 +53,7 @@ class ContactAudit:
         self._goals, self._true = array("i"), array("i")  # ticks of poses, one after another
         self._times, self._starts = array("d"), array("i")
         self._sets = 0
+        self._collecting = threading.Lock()
         self._contact: SelfContact | None = None
         self._heir: NDArray[np.bool_] = np.zeros(0, bool)
         self._shallowest: Array = np.zeros(0)
@@ -60,13 +62,18 @@ class ContactAudit:
 
     def begin(self, servo_id: int, goal_tick: int) -> None:
         """Record that torque came on over a goal."""
-        self._told[servo_id] = self._pinned[servo_id] = goal_tick
+        with self._collecting:
+            self._told[servo_id] = self._pinned[servo_id] = goal_tick
 
     def told(self, t_s: float, servo_id: int, tick: int, torque: bool) -> None:
         """Record a goal that was sent; with torque on, the last servo's goal completes a pose."""
-        self._told[servo_id] = tick
-        if not torque or servo_id != self._robot.servo_ids[-1] or len(self._told) < len(self._robot.servo_ids):
-            return
+        with self._collecting:
+            self._told[servo_id] = tick
+            if torque and servo_id == self._robot.servo_ids[-1] and len(self._told) == len(self._robot.servo_ids):
+                self._complete(t_s)
+
+    def _complete(self, t_s: float) -> None:
+        """Keep the pose that was told, if it is one of those to be checked."""
         self._sets += 1
         if len(self._times) >= _MAX_POSES:
             return
@@ -85,20 +92,24 @@ class ContactAudit:
 
     def check(self) -> None:
         """Check the poses collected so far, and forget them: for runs of hours."""
-        if not self._times:
+        with self._collecting:
+            goals, self._goals = self._goals, array("i")
+            true_ticks, self._true = self._true, array("i")
+            times, self._times = self._times, array("d")
+            starts, self._starts = self._starts, array("i")
+        if not times:
             return
         if self._contact is None:
             self._contact = SelfContact(self._robot, margin_m=0.0)
         n = len(self._robot.servo_ids)
-        told, true = (np.array(a, np.int32).reshape(-1, n) for a in (self._goals, self._true))
-        cuts = sorted({0, len(told), *self._starts, *range(0, len(told), _POSES_AT_ONCE)})
-        begins = set(self._starts)
+        told, true = (np.array(a, np.int32).reshape(-1, n) for a in (goals, true_ticks))
+        cuts = sorted({0, len(told), *starts, *range(0, len(told), _POSES_AT_ONCE)})
+        begins = set(starts)
         for a, b in pairwise(cuts):
-            self._judge(told[a:b], self._times[a:b], begins=a in begins)
+            self._judge(told[a:b], times[a:b], begins=a in begins)
             if len(true):
                 self.measured += int((self._distances_m(true[a:b]) < 0).any(1).sum())
         self.checked += len(told)
-        self._goals, self._true, self._times, self._starts = array("i"), array("i"), array("d"), array("i")
 
     def report(self) -> dict[str, Any]:
         """All figures as plain values."""

@@ -14,7 +14,7 @@ from retarget.path.collision import SelfContact
 from retarget.robot.loading import load_robot
 from retarget.robot.ticks import JointServoMap
 from sim.audit.audit import ANSWERS_TOLD, TTY_GOALS, Audit
-from sim.audit.contact_audit import ContactAudit
+from sim.audit.contact_audit import EVERY, ContactAudit
 from sim.faults import Fault
 from tests.support.robots import packaged
 from tests.support.servo_bench import Bench
@@ -274,6 +274,24 @@ def test_a_contact_that_nobody_commanded_is_measured_only():
     tell(contacts, pose[CLEAR], 50)
     report = contacts.report()
     assert (report["self_contacts"], report["measured_contacts"]) == (0, 10)
+
+
+def test_poses_that_come_while_others_are_checked_are_not_lost():
+    """The thread that serves servos behind a tty goes on meanwhile; it also ended, when it added to a list that was being copied."""
+    pose = poses_of_op2()[CLEAR]
+
+    class Busy(ContactAudit):
+        """Gets more poses at the first look at those before."""
+
+        def _distances_m(self, ticks):
+            if not self.checked and not self._times:
+                tell(self, pose, 3 * EVERY)
+            return super()._distances_m(ticks)
+
+    contacts = Busy(OP2)
+    tell(contacts, pose, 4 * EVERY)
+    contacts.check()
+    assert contacts.report()["poses_checked"] == 7
 
 
 def test_a_goal_lost_on_the_wire_is_part_of_the_pose_that_was_told():
