@@ -277,7 +277,7 @@ def test_a_contact_that_nobody_commanded_is_measured_only():
 
 
 def test_poses_that_come_while_others_are_checked_are_not_lost():
-    """The thread that serves servos behind a tty goes on meanwhile; it also ended, when it added to a list that was being copied."""
+    """The thread that serves servos behind a tty goes on meanwhile; once it ended, since a list was being copied."""
     pose = poses_of_op2()[CLEAR]
 
     class Busy(ContactAudit):
