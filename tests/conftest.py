@@ -12,6 +12,7 @@ import pytest
 from hypothesis import settings
 
 from tests.host_watch import HostWatch
+from tests.realtime_turn import RealtimeTurn, processors
 
 if TYPE_CHECKING:
     from mmm_core.generate.engine import Engine
@@ -22,6 +23,7 @@ settings.register_profile("soak", deadline=None, max_examples=100)
 settings.load_profile("mmmd")
 
 WATCH = pytest.StashKey[HostWatch]()
+TURN = pytest.StashKey[RealtimeTurn]()
 BEGAN = pytest.StashKey[float]()
 
 
@@ -42,24 +44,26 @@ def pytest_configure(config: pytest.Config) -> None:
     gc.disable()  # collecting makes a million objects that all stay: looking for rubbish among them takes an eighth of its time
     if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:  # a suite in the background hands that on to its children
         signal.signal(signal.SIGINT, signal.default_int_handler)
+    if hasattr(config, "workerinput"):
+        config.stash[TURN] = RealtimeTurn(config.workerinput["testrunuid"], processors())
     if config.getoption("--void-when-held-up"):
         config.stash[WATCH] = HostWatch().start()
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Files with whole daemons first: they take longest and mostly wait; what only computes fills the processors at the end.
+    """Files in real time, which wait for turns, and files that only compute by turns, so that the processors are never without work.
 
     In a file the tests that share something come last: a daemon that they share would run while the others wait.
     """
     waiting = {item.path for item in items if item.get_closest_marker("realtime")}
     gc.freeze()
     gc.enable()
-    place = {path: k for k, path in enumerate(dict.fromkeys(item.path for item in items))}
-    items.sort(
-        key=lambda item: (
-            item.path not in waiting, "end_to_end" not in item.path.parts, place[item.path], _shares(item)
-        )
-    )  # fmt: skip
+    files = dict.fromkeys(item.path for item in items)
+    first = sorted((f for f in files if f in waiting), key=lambda f: "end_to_end" not in f.parts)
+    others = [f for f in files if f not in waiting]
+    # The number of a file among its kind, as a share: half of both kinds come in the first half.
+    place = {f: (k / len(kind), kind is others) for kind in (first, others) for k, f in enumerate(kind)}
+    items.sort(key=lambda item: (place[item.path], _shares(item)))
 
 
 def _shares(item: pytest.Item) -> bool:
@@ -72,6 +76,8 @@ def _shares(item: pytest.Item) -> bool:
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_runtest_setup(item: pytest.Item) -> None:
+    if (turn := item.config.stash.get(TURN, None)) and item.get_closest_marker("realtime"):
+        turn.take()
     watch = item.config.stash.get(WATCH, None)
     if watch is not None and item.get_closest_marker("realtime"):
         watch.wait_until_still()
@@ -79,6 +85,13 @@ def pytest_runtest_setup(item: pytest.Item) -> None:
         module = item.getparent(pytest.Module)
         assert module is not None
         module.stash.setdefault(BEGAN, item.stash[BEGAN])
+
+
+@pytest.hookimpl(trylast=True)
+def pytest_runtest_teardown(item: pytest.Item, nextitem: pytest.Item | None) -> None:
+    """A file keeps its turn to its end: what its tests share works on between them."""
+    if (turn := item.config.stash.get(TURN, None)) and (nextitem is None or nextitem.path != item.path):
+        turn.give_back()
 
 
 @pytest.hookimpl(wrapper=True)
