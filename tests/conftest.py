@@ -51,7 +51,7 @@ def pytest_configure(config: pytest.Config) -> None:
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Files in real time, which wait for turns, and files that only compute by turns, so that the processors are never without work.
+    """Files in real time, which wait for turns, between files that only compute, so that processors are never without work.
 
     In a file the tests that share something come last: a daemon that they share would run while the others wait.
     """

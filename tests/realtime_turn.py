@@ -1,7 +1,7 @@
 """Turns for files of tests in real time: as many at once as there are processors.
 
-`make test` has more workers than processors, because such tests mostly wait. But each runs several processes with real-time priority,
-and four sets of these on two processors kept simulated servos silent for 0.2 s now and then, which is a fault, as it would be on a robot.
+`make test` has more workers than processors, because such tests mostly wait. But each runs several processes with real-time
+priority. Four sets of these on two processors kept simulated servos silent for 0.2 s now and then, which is a fault, as on a robot.
 """
 
 from __future__ import annotations
