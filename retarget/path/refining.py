@@ -33,7 +33,7 @@ _MOST_PAIRS = 8
 """Number of nearest pairs of each pose that are part of the program."""
 _AIM_M = 0.001
 """Metres beyond the margin that poses keep, a reserve for the error of the linearisation."""
-_LEAST_GAIN = 1e-3
+_LEAST_GAIN = 5e-3
 """Decrease of a frame's mean cost by a round below which a free path is not improved further."""
 _MORE_M = 0.0015
 """Additional metres that poses keep where the path of the previous round touched."""

@@ -42,7 +42,11 @@ class Page:
 
     def until(self, *states: str) -> None:
         """Wait until the page says that the robot is in one of these states."""
-        self.browser.wait(lambda: self.browser.text("#state") in states, f"{states} on the page", SOON_S)
+        try:
+            self.browser.wait(lambda: self.browser.text("#state") in states, f"{states} on the page", SOON_S)
+        except AssertionError as error:
+            error.add_note(self.browser.js("document.body.innerText")[-2000:])  # the log comes last
+            raise
 
     def until_passed(self, state: str, since: int) -> None:
         """Wait until the page has shown a state, among those after the first `since` of them."""

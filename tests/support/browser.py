@@ -105,11 +105,20 @@ class Browser:
         self.call("Input.dispatchKeyEvent", type="keyUp", **common)
 
     def press(self, selector: str) -> None:
-        """Press where a person sees the element: fails when another one lies over it or it is out of sight."""
-        x, y, hit = self.js(
+        """Press where a person sees the element, once it stands still; fails when it is covered or out of sight."""
+        find = (
             f"(() => {{ const e = document.querySelector({selector!r}), r = e.getBoundingClientRect(), x = r.x + r.width / 2,"
             " y = r.y + r.height / 2, hit = document.elementFromPoint(x, y); return [x, y, e === hit || e.contains(hit)]; })()"
         )
+        before: list[Any] = []
+
+        def stands() -> bool:
+            nonlocal before
+            before, last = self.js(find), before
+            return before == last
+
+        self.wait(stands, f"{selector} stands still", CALL_S)
+        x, y, hit = before
         assert hit, f"{selector} at {x:.0f}, {y:.0f} is not in sight"
         for kind in ("mousePressed", "mouseReleased"):
             self.call("Input.dispatchMouseEvent", type=kind, x=x, y=y, button="left", clickCount=1)
