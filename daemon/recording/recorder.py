@@ -59,7 +59,7 @@ def main() -> int:
         with RotatingLog(Path(arguments.out), robot, *bounds, arguments.settings) as writer:
             while True:
                 last_round = bool(stopping) or parent.gone
-                events.poll(0 if last_round else round(POLL_S * 1e3))
+                events.poll(round(POLL_S * 1e3))  # in the last round for what is still on its way
                 records, index, lost = link.cycles.since(index)
                 if lost:
                     writer.cycles_dropped += lost

@@ -1,7 +1,8 @@
 """Plans one block of a long motion as a path inside every limit, without self-contact, with free braking at its end.
 
 Poses in contact are pushed out of contact, the limiter turns them into a path, and near contacts `refining` improves the path with
-the distances among its bounds. A path that still touches is pushed, then drawn towards the rest pose, then stopped.
+the distances among its bounds. A path that still touches is pushed, then drawn towards the rest pose, then stopped. A path that
+this frees is improved too.
 """
 
 from __future__ import annotations
@@ -139,16 +140,15 @@ class BlockPlanner:
             if not hit.any():
                 break
         begin_rad = task.begin.position_rad
-        if (
-            hit.any() and task.allowed is not None
-        ):  # the start is within the margin and blocks the motion: first leave it
+        if hit.any() and task.allowed is not None:
+            # The start is within the margin and blocks the motion: first leave it.
             eased = eased.copy()
             eased[:_AWAY_FRAMES] = self._avoidance.push_out(begin_rad[None], begin_rad)[0]
             path, hit, least = self._limited(task, eased, least)
         if hit.any():
             return self._stop_before_contact(path, hit, task.period, task.allowed), interventions
         better = self._refined(task, path, least, is_free=True)
-        return (path if better is None else better[0]), interventions
+        return (better[0] if better is not None and better[1] < 0 else path), interventions
 
     def _nearest(self, task: _Task, found: list[Array]) -> Array:
         """The path whose arms are nearest to the poses."""

@@ -108,12 +108,10 @@ class Refiner:
             more_m[hit] += _MORE_M
             more_m[:-1][hit[1:] & ~hit[:-1]] += _MORE_M
             more_m[1:][hit[:-1] & ~hit[1:]] += _MORE_M
-        if (
-            hit.any()
-            and not hit[:n_needed].any()
-            and not touching(control, least, Seen(control, near))[:n_needed].any()
-        ):
-            yield control, worse / n_frames
+        if hit.any() and not hit[:n_needed].any():
+            hit = touching(control, least, Seen(control, near))
+            if not hit[:n_needed].any():
+                yield control, worse / n_frames
 
     def _near(self, control: Array, least: LeastDistances, places: SplinePlaces) -> tuple[NearPairs, LeastDistances]:
         """Near pairs in N frames and in poses between them, and bounds of distances in the frames."""
