@@ -36,7 +36,8 @@ $(VENV)/.ready: pyproject.toml constraints.txt
 demo: setup
 	$(BIN)/mmmd demo --out out/demo
 
-# Tests of daemons wait for real time: four files at once keep two cores busy, those that take longest first (tests/conftest.py).
+# Tests of daemons wait for real time: four files at once keep two cores busy, no more of them in real time than there are cores
+# (tests/conftest.py, tests/realtime_turn.py).
 # Their processes may starve on a slow machine, so what failed runs once more by itself, in a still moment, and has to pass then,
 # unless the machine itself stood still meanwhile (tests/host_watch.py). Compiled modules are kept whatever the environment says:
 # a daemon whose four processes compile theirs at every start takes half as much processor time again.

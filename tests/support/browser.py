@@ -24,6 +24,8 @@ FLAGS = (
     "--hide-scrollbars",
 )  # fmt: skip
 START_S, CALL_S = 30.0, 60.0
+_LOOKS = 5
+"""Looks, 0.05 s apart, at which a button has to be in the same place: what moves between press and release is not pressed."""
 _PAGE_IS_GONE = "Inspected target navigated or closed"
 
 
@@ -110,15 +112,14 @@ class Browser:
             f"(() => {{ const e = document.querySelector({selector!r}), r = e.getBoundingClientRect(), x = r.x + r.width / 2,"
             " y = r.y + r.height / 2, hit = document.elementFromPoint(x, y); return [x, y, e === hit || e.contains(hit)]; })()"
         )
-        before: list[Any] = []
+        looks: list[list[Any]] = []
 
         def stands() -> bool:
-            nonlocal before
-            before, last = self.js(find), before
-            return before == last
+            looks.append(self.js(find))
+            return len(looks) >= _LOOKS and all(look == looks[-1] for look in looks[-_LOOKS:])
 
         self.wait(stands, f"{selector} stands still", CALL_S)
-        x, y, hit = before
+        x, y, hit = looks[-1]
         assert hit, f"{selector} at {x:.0f}, {y:.0f} is not in sight"
         for kind in ("mousePressed", "mouseReleased"):
             self.call("Input.dispatchMouseEvent", type=kind, x=x, y=y, button="left", clickCount=1)
