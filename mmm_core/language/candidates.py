@@ -213,6 +213,5 @@ def _log(meant: Meant) -> float:
 @cache
 def _weights() -> NDArray[np.float64]:
     weights = dict(pairs("choice"))
-    return np.array(
-        [float(weights.get(name, 0)) for name in EVIDENCE]
-    )  # a new kind has no weight before `mmmd train choice`
+    # A new kind of evidence has no weight before `mmmd train choice`.
+    return np.array([float(weights.get(name, 0)) for name in EVIDENCE])

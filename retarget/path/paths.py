@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from retarget.path.report import Comparison, RetargetReport
+from retarget.path.spline_places import on_spline
 
 Array = NDArray[np.float64]
 _ROUNDING_RAD = 1e-10
@@ -74,7 +75,7 @@ class JointPath:
         """(T, J) positions at `times_s` (T,) since the start."""
         k, u = self._segment(times_s)
         c0, c1, c2 = self.control_rad[k], self.control_rad[k + 1], self.control_rad[k + 2]
-        place = (c0 + c1) / 2 + (c1 - c0) * u + (c2 - 2 * c1 + c0) * (u * u / 2)
+        place = on_spline(self.control_rad, k, u[:, 0])
         # Rounding must not carry a path that runs along a position limit beyond it.
         place = np.clip(place, np.minimum(np.minimum(c0, c1), c2), np.maximum(np.maximum(c0, c1), c2))
         if self.ends_rad is None:

@@ -31,7 +31,7 @@ class SplinePlaces:
         return cls(np.tile(np.arange(n_segments, dtype=np.int64), 2), np.repeat((1.0, 0.5), n_segments))
 
     def and_within(self, segments: Indices) -> SplinePlaces:
-        """These places, and six more in each of some segments that has no more than the first two."""
+        """Add six places to each of the given segments; a segment that already has them stays as it is."""
         new = np.setdiff1d(segments, self.segment[np.isin(self.u, _WITHIN)])
         segment, u = np.repeat(new, len(_WITHIN)), np.tile(_WITHIN, len(new))
         return SplinePlaces(np.concatenate([self.segment, segment]), np.concatenate([self.u, u]))
