@@ -77,16 +77,18 @@ def _half(ids: Tensor) -> int:
 
 def _still(engine: MotionModel, rows: Sequence[Tensor]) -> list[Tensor]:
     """(C,) for each pair of neighbouring rows: whether the body part of a codebook ends where it begins again."""
-    names = engine.model.tokenizer.part_names
-    found: list[Tensor] = []
-    for left, right in pairwise(rows):
-        end, begin = _pose(engine, left[-_SEEN_TOKENS:], -1), _pose(engine, right[:_SEEN_TOKENS], 0)
-        of_parts = [_PART_COLUMNS.get(name, _WHOLE_BODY) for name in names]
-        apart_m = [float(np.linalg.norm(end[columns] - begin[columns])) for columns in of_parts]
-        found.append(torch.tensor([metres < STILL_M for metres in apart_m]))
-    return found
+    ends = [left[-_SEEN_TOKENS:] for left in rows[:-1]]
+    begins = [right[:_SEEN_TOKENS] for right in rows[1:]]
+    frames = [-1] * len(ends) + [0] * len(begins)
+    features = [piece[frame] for piece, frame in zip(_decoded(engine, ends + begins), frames, strict=True)]
+    ended, begun = np.split(body_path(motion_of(np.stack(features))), 2)
+    of_parts = [_PART_COLUMNS.get(name, _WHOLE_BODY) for name in engine.model.tokenizer.part_names]
+    apart_m = np.stack([np.linalg.norm(ended[:, part] - begun[:, part], axis=1) for part in of_parts], 1)
+    return list(torch.from_numpy(apart_m < STILL_M))
 
 
-def _pose(engine: MotionModel, ids: Tensor, frame: int) -> NDArray[np.floating]:
-    """(18,) `body_path` of one frame of ids (L, C)."""
-    return body_path(motion_of(engine.model.tokenizer.decode(ids[None])[0].numpy()))[frame]
+def _decoded(engine: MotionModel, pieces: Sequence[Tensor]) -> list[NDArray[np.float32]]:
+    """(4 L, 263) features of each piece (L, C), decoded by itself; pieces of one length are decoded in one batch."""
+    of_length = {n: torch.stack([piece for piece in pieces if len(piece) == n]) for n in set(map(len, pieces))}
+    decoded = {n: iter(engine.model.tokenizer.decode(batch).numpy()) for n, batch in of_length.items()}
+    return [next(decoded[len(piece)]) for piece in pieces]
