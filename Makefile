@@ -7,6 +7,7 @@ PIP_FLAGS ?=
 TORCH ?= cpu
 export OMP_NUM_THREADS ?= 1
 export OMP_WAIT_POLICY ?= passive
+export GOMP_SPINCOUNT ?= 3000
 
 .PHONY: help setup demo test test-long check docs format soak clean
 

@@ -14,6 +14,7 @@ from pathlib import Path
 
 from daemon.host.cores import on_all_cores
 from daemon.host.parent import PARENT_VARIABLE
+from daemon.host.worker_threads import WORKER_THREADS
 
 log = logging.getLogger(__name__)
 
@@ -108,7 +109,7 @@ class Child:
 
     async def start(self, pass_fds: Sequence[int] = ()) -> None:
         """Start the process, or start it again; it inherits the descriptors `pass_fds`."""
-        environment = {**os.environ, "OMP_NUM_THREADS": "1", "OMP_WAIT_POLICY": "passive", **self._environment}
+        environment = {**os.environ, **WORKER_THREADS, **self._environment}
         environment[PARENT_VARIABLE] = str(os.getpid())
         self.said.clear()
         self._started_s = self._ran_s = time.monotonic()

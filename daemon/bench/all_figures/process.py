@@ -16,6 +16,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from daemon.host.worker_threads import WORKER_THREADS
 from sim.steal_time import STAT, stolen_s
 
 GRACE_S = 30.0
@@ -23,9 +24,6 @@ GRACE_S = 30.0
 LAST_LINES = 2
 """Lines of stderr that are kept of a failed command."""
 _TICK_S = 1 / os.sysconf("SC_CLK_TCK")
-_THREADS = {"OMP_NUM_THREADS": "1", "OMP_WAIT_POLICY": "passive"}
-"""Environment variables, as in the Makefile: worker threads that wait in a busy loop would take the cores from the measured
-command."""
 
 
 @dataclass(frozen=True)
@@ -64,7 +62,7 @@ def run_command(
     busy_s, stolen, began_s, own_s = _busy_s(), sum(stolen_s()), time.monotonic(), _children_s()
     with tempfile.TemporaryFile("w+", encoding="utf-8") as out:
         process = subprocess.Popen(
-            _argv(words), cwd=folder, env=_THREADS | os.environ, stdin=subprocess.DEVNULL, stdout=out,
+            _argv(words), cwd=folder, env={**WORKER_THREADS, **os.environ}, stdin=subprocess.DEVNULL, stdout=out,
             stderr=subprocess.PIPE, text=True, errors="replace", start_new_session=True,
         )  # fmt: skip
         reader = threading.Thread(target=_read, args=(process, last, tell), daemon=True)
