@@ -34,6 +34,7 @@ function halt(verb, pressedMs) {
 }
 function heardCtl(event) {
   const last = view.halt;
+  if (view.asked && event.id === view.asked.id) return heardVerb(event);
   if (!last || event.id !== last.id) { if (event.found) answer(`${event.asked}: ${event.found}; ${event.do}`, "bad"); return; }
   const done = event.type === "carried_out" || (event.type === "ack" && event.carried_out !== false);
   if (last.done || (last.ackMs && !done)) return; // both ways answer, and not in order
@@ -69,10 +70,11 @@ function options() {
 }
 function ask(request) {
   const id = newId();
+  view.asked = null; // the answer that is shown belongs to the last press
   if (["say", "gesture"].includes(request.type)) lastId = id;
   if (!cmd.send({ id, ...request })) answer("no connection to the server", "bad");
 }
-function answer(text, kind = "") { $("answer").textContent = text; $("answer").className = kind; }
+function answer(text, kind = "") { $("answer").textContent = text; $("answer").className = kind; $("answer").scrollTop = 0; }
 function heardCmd(event) {
   if (event.type === "capabilities") return capable(event);
   if (event.found) return answer(`${event.asked}: ${event.found}; ${event.do}`, "bad");
@@ -100,10 +102,37 @@ $("text").addEventListener("keydown", (e) => {
   back = Math.max(-1, Math.min(said.length - 1, back + (e.key === "ArrowUp" ? 1 : -1)));
   $("text").value = back < 0 ? "" : said[back];
 });
+
+// ---- verbs: by POST where the connection is not open. Never twice: an arm that arrives late could undo what was pressed after it
+const DONE = { arm: /idle|holding|moving/, park: /limp/, torque: /limp/, reset: /limp|arming|idle|holding|moving/ };
+const PATIENCE_MS = 3000;
 $("verbs").addEventListener("click", (e) => {
-  const verb = e.target.dataset?.verb;
-  if (verb && !ctl.send({ type: verb, id: newId(), ...(verb === "torque" ? { on: false } : {}) })) answer("no connection to the server", "bad");
+  const verb = e.target.dataset?.verb, name = e.target.textContent;
+  if (!verb) return;
+  const request = { ...stamp(), type: verb, id: newId(), ...(verb === "torque" ? { on: false } : {}) };
+  const asked = view.asked = { id: request.id, verb, name, ackS: null, from: "" };
+  const silent = () => { if (view.asked === asked && asked.ackS === null) answer(`${name}: NO ANSWER; look at the robot's state before you press again`, "bad"); };
+  answer(`${name}: sent`);
+  if (ctl.send(request)) { setTimeout(silent, PATIENCE_MS); return; }
+  answer(`${name}: the connection is lost; sent by another way`, "warn");
+  get.post("/v1/ctl", JSON.stringify(request), AbortSignal.timeout(PATIENCE_MS)).then(heardCtl).catch(silent);
 });
+function heardVerb(event) {
+  const asked = view.asked;
+  if (event.found) { view.asked = null; return answer(`${asked.name}: ${event.found}; ${event.do}`, "bad"); }
+  Object.assign(asked, { ackS: event.t_mono, from: event.state });
+  answer(`${asked.name}: accepted`);
+}
+// What became of a verb that was accepted: told by the states after its answer.
+function outcome(s) {
+  const asked = view.asked;
+  if (!asked || asked.ackS === null || s.t_mono <= asked.ackS) return;
+  const done = DONE[asked.verb].test(s.state), off = !done && s.state !== asked.from && ["limp", "fault", "estop"].includes(s.state);
+  asked.from = s.state;
+  if (!done && !off) return;
+  view.asked = null;
+  answer(`${asked.name}: ${done ? "carried out" : "broken off"}, the robot is ${s.state}${off && s.reason ? `: ${s.reason}` : ""}`, off ? "bad" : "");
+}
 $("cancel").addEventListener("click", () => ask({ type: "cancel" }));
 $("record").addEventListener("submit", (e) => { e.preventDefault(); if ($("name").value) ask({ type: "record", name: $("name").value }); });
 for (const key of ["yaw", "pitch"]) $(key).addEventListener("change", () => ask({ type: "look", yaw_deg: +$("yaw").value, pitch_deg: +$("pitch").value }));
@@ -140,7 +169,7 @@ function heardState(s) {
   view.history.add(s.t_mono, { goal: s.goal_rad, present: s.present_rad, effort: s.effort });
   if (!$("lost").hidden) { lost(""); if (!view.capable) cmd.send({ type: "capabilities", id: newId() }); }
   if (scene && changed(s)) { scene.dirty = true; scene.arrived++; }
-  head(s);
+  head(s); outcome(s);
 }
 // Whether a drawing of this state would look different from the one on the screen: a robot at rest is not drawn again.
 function changed(s) {
@@ -154,7 +183,7 @@ function head(s) {
   const generator = s.generator.startsWith("ready") ? "" : `; generator ${s.generator}: gestures work`;
   set("needs", (s.reason || (s.must_arm && s.state === "limp" ? "torque is off; press arm" : NEEDS[s.state])) + generator + (s.recording ? `; recording ${s.recording}` : ""));
   if ($("needs").title !== $("needs").textContent) $("needs").title = $("needs").textContent;
-  for (const b of $("verbs").children) if (b.dataset.verb === "reset") b.disabled = !["fault", "estop"].includes(s.state);
+  document.querySelector("[data-verb=reset]").classList.toggle("pale", !["fault", "estop"].includes(s.state)); // not disabled: a state may come late
   if (document.activeElement !== $("idle") && $("idle").value !== s.idle) $("idle").value = s.idle;
 }
 function set(id, text, kind) {
@@ -167,7 +196,8 @@ function queue(s) {
   if (!c) { for (const id of ["played", "committed", "open"]) part(id, 0, 0); set("running", s.waiting.length ? `${s.waiting.length} wait` : "nothing is played"); return; }
   const rate = view.capable?.rate_hz || 100, all = Math.max(c.frames, 1), pushed = c.frames_pushed, played = Math.max(0, pushed - s.queued_ms * rate / 1000);
   part("played", 0, played / all); part("committed", played / all, pushed / all); part("open", pushed / all, 1);
-  set("running", `“${c.text}” ${(played / rate).toFixed(1)} of ${(all / rate).toFixed(1)} s; dark: played, light: at the servos' process, striped: still open${s.waiting.length ? `; ${s.waiting.length} wait` : ""}`);
+  set("running", `${(played / rate).toFixed(1)} of ${(all / rate).toFixed(1)} s${s.waiting.length ? `, ${s.waiting.length} wait` : ""}: “${c.text}”`);
+  if ($("running").title !== c.text) $("running").title = c.text;
 }
 function heardHealth(h) {
   const rows = h.servos.map((s) => {
@@ -199,7 +229,6 @@ async function meet(name) {
   $("joint").replaceChildren(...view.robot.joints.map((j, k) => Object.assign(document.createElement("option"), { value: k, textContent: j.name })));
   scene?.show(view.robot);
   const swatch = (side) => `rgb(${view.robot.person.colours[side].map((c) => Math.round(255 * c))})`;
-  $("legend").replaceChildren(...["left", "right"].flatMap((side) => [Object.assign(document.createElement("b"), { textContent: "● " }), `its ${side} `]), " · solid: measured, transparent: commanded; the person shows the motion that the robot follows");
   [...$("legend").querySelectorAll("b")].forEach((b, k) => { b.style.color = swatch(["left", "right"][k]); });
 }
 $("joint").addEventListener("change", () => { view.joint = +$("joint").value; });
@@ -229,7 +258,7 @@ function plots() {
     plot($("plot-effort"), { title: unit === "mA" ? "current" : "load", unit, rows, series: [{ name: hot === null ? "" : `${hot} °C`, colour: "#b35c00", of: (r) => r.effort[servo] }], end });
   }
 }
-Object.assign(view, { heard: heardPub, paint, plots }); // a test plays an hour of messages in a minute
+Object.assign(view, { heard: heardPub, paint, plots, ctl }); // a test plays an hour of messages in a minute
 setInterval(paint, 33);
 setInterval(() => { if (view.state) queue(view.state); plots(); }, 200);
 setInterval(() => {

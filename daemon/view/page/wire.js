@@ -4,7 +4,7 @@ if (token) sessionStorage.setItem("token", token);
 
 export const get = (path) => fetch(path, token ? { headers: { Authorization: `Bearer ${token}` } } : {});
 
-get.post = async (path, body) => (await fetch(path, { method: "POST", body, headers: token ? { Authorization: `Bearer ${token}` } : {} })).json();
+get.post = async (path, body, signal) => (await fetch(path, { method: "POST", body, signal, headers: token ? { Authorization: `Bearer ${token}` } : {} })).json();
 
 export class Line {
   constructor(kind, heard, changed = () => {}) {
