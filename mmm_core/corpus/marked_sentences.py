@@ -110,16 +110,34 @@ def read_manner(line: str, path: Path = MANNER_SENTENCES) -> tuple[str, list[str
     >>> read_manner("nod {slow: at a crawl}")
     ('nod at a crawl', ['none', 'slow', 'slow', 'slow'])
     """
-    sentence, marks = _without_marks(line, _MANNER_MARK)
-    if "{" in sentence or "}" in sentence:
-        raise TrainingDataError(
-            path, "", f"a brace that is no mark in {line!r}", "{slow: ...}, {fast: ...}, {small: ...} or {large: ...}"
-        )
+    sentence, marks = _of_manner(line, path)
     manners = [
         next((mark["label"] for start, end, mark in marks if start <= a and b <= end), NO_MANNER)
         for a, b in words_of(sentence)
     ]
     return sentence, manners
+
+
+def marked_manners(line: str, path: Path = MANNER_SENTENCES) -> tuple[str, list[tuple[str, str]]]:
+    """A sentence with marked manner as plain text, and each manner with its words.
+
+    Raises:
+        TrainingDataError: as `read_manner`.
+
+    >>> marked_manners("nod {slow: at a crawl}")
+    ('nod at a crawl', [('slow', 'at a crawl')])
+    """
+    sentence, marks = _of_manner(line, path)
+    return sentence, [(mark["label"], mark["words"]) for _, _, mark in marks]
+
+
+def _of_manner(line: str, path: Path) -> tuple[str, list[tuple[int, int, re.Match[str]]]]:
+    sentence, marks = _without_marks(line, _MANNER_MARK)
+    if "{" in sentence or "}" in sentence:
+        raise TrainingDataError(
+            path, "", f"a brace that is no mark in {line!r}", "{slow: ...}, {fast: ...}, {small: ...} or {large: ...}"
+        )
+    return sentence, marks
 
 
 def _without_marks(line: str, pattern: re.Pattern[str]) -> tuple[str, list[tuple[int, int, re.Match[str]]]]:

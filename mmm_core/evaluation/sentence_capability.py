@@ -17,6 +17,8 @@ from mmm_core.recognition.signs import shows
 
 _LONGEST_HOLD_S = 5.0
 """A clip of the corpus has no room for a longer hold; who can hold a pose for five seconds can hold it for longer."""
+_MOST_STROKES = 5
+"""Likewise, a clip has no room for ten slow strokes; who can do five can do more."""
 _OF_WHOLE = frozenset({"order", "at_once", "denial"})
 
 
@@ -52,8 +54,10 @@ def _shows_too(command: Command, family: str, on_robot: OnRobot) -> bool:
 
 
 def _named(command: Command, text: str = "") -> Probe:
-    """A command as a probe whose hold fits into a clip of the corpus."""
-    return replace(as_probe(command), text=text, hold_s=min(command.hold_s, _LONGEST_HOLD_S))
+    """A command as a probe whose hold and strokes fit into a clip of the corpus."""
+    probe = as_probe(command)
+    count = None if probe.count is None else min(probe.count, _MOST_STROKES)
+    return replace(probe, text=text, count=count, hold_s=min(command.hold_s, _LONGEST_HOLD_S))
 
 
 def _expected(command: Command) -> frozenset[str]:

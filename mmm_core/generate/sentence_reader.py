@@ -6,7 +6,7 @@ sentence or its mirror image, whichever names the right first, so that a mirrore
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import chain
 
@@ -23,6 +23,7 @@ from mmm_core.language.commands import Reading
 from mmm_core.language.denial import surely_denies
 from mmm_core.language.hard_phrases import without_hard_phrases
 from mmm_core.language.joined import with_parted_commands
+from mmm_core.language.manner_words import likely_manners
 from mmm_core.language.mirroring import canonical, mirror_words
 from mmm_core.language.plain_gestures import (
     OUTSIDE,
@@ -42,7 +43,7 @@ from mmm_core.language.spelling import mended
 from mmm_core.language.sure_reading import is_sure, leaves_words_out, needs_tags, unknown_commands
 from mmm_core.language.tagged_manner import manner_phrases, with_left_manner, with_likely_manner, with_plain_manner
 from mmm_core.language.tagged_reading import can_be_read, reading_of, without_splits
-from mmm_core.language.tagged_words import MarkedCommands, likely_tags, marked_commands, words_of
+from mmm_core.language.tagged_words import MANNERS, MarkedCommands, likely_tags, marked_commands, words_of
 from mmm_core.language.word_tables import REMEMBERED
 from mmm_core.model.gesture_classifier import GestureClassifier, meant_by, meant_by_parts, meant_by_states
 from mmm_core.model.sentence_tagger import SentenceTagger, WordStates, log_probability, pieces_of, word_states
@@ -117,7 +118,13 @@ class SentenceReader:
             found = said_at_once(without_repeats(found))
         whole = states.meant
         outside = whole.probability if whole.name == OUTSIDE else 0.0
-        return replace(without_denied_acts(with_likely_manner(found, whole.manners), whole), outside=outside)
+        manners = likely_manners(words, whole.manners, self._of_tags(states))
+        return replace(without_denied_acts(with_likely_manner(found, manners), whole), outside=outside)
+
+    def manner_evidence(self, text: str) -> tuple[Mapping[str, float], Mapping[str, float]]:
+        """The probability of each tempo and size by what a text means as a whole, and the greatest one of any of its words."""
+        states = self._states(_in_order(strip_emoji(text)))
+        return states.meant.manners, self._of_tags(states)
 
     def ways_to_read(self, text: str) -> Ways | None:
         """The ways to read a text among which one is chosen; None where the rules are sure or no way is known."""
@@ -230,6 +237,10 @@ class SentenceReader:
             meant = Meant(*meant_by_states(self._classifier, states.states[None], mask)[0])
             meant = _seen_in_mirror(meant) if is_image else meant
         return _Encoded(states, meant, is_image)
+
+    def _of_tags(self, states: _Encoded) -> dict[str, float]:
+        """The greatest probability of each manner among the words of a sentence."""
+        return dict(zip(MANNERS, np.exp(self._tagged(states)[1].max(0)).tolist(), strict=True))
 
     def _tagged(self, states: _Encoded) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
         """The (N, 8) log-probabilities of the tags of a sentence's words, and the (N, 5) ones of their manners."""

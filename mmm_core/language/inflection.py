@@ -77,7 +77,7 @@ def times(count: int, rng: np.random.Generator) -> str:
         return ("once", "one time", "a single time", "1 time", "just once", "only once")[int(rng.integers(6))]
     if count == 2 and rng.random() < 0.5:
         return "twice"
-    word = NUMBERS[count] if rng.random() < 0.6 else str(count)
+    word = NUMBERS[count] if rng.random() < 0.6 and count < len(NUMBERS) else str(count)
     form = ("{} times", "{} times", "{} times", "{}x", "{} times in a row", "exactly {} times")[int(rng.integers(6))]
     return form.replace("{}", word if "x" not in form else str(count))
 

@@ -17,15 +17,17 @@ from numpy.typing import NDArray
 
 from mmm_core.language.commands import PlainCommand, Reading
 from mmm_core.language.limbs import limbs_of
+from mmm_core.language.manner_words import asked_manners
 from mmm_core.language.reading import command_of, read
 from mmm_core.language.spelling import mended
 from mmm_core.language.tagged_words import FAST, LARGE, MANNERS, SLOW, SMALL, words_of
 
 _ADVERBS = {SLOW: "slowly", FAST: "quickly", SMALL: "slightly", LARGE: "hugely"}
+_OF_WORDS = 1.0
+"""Weight of what the words of a phrase say of its manner, against what the tagger says."""
 _LEAST_PROBABILITY = 0.7
 """Mean probability, over the words of a phrase, below which a manner is not believed."""
-LIKELY_OF_WHOLE: Mapping[str, float] = {SLOW: 0.6, FAST: 0.3, SMALL: 0.8, LARGE: 0.8}
-LIKELY_OF_PART = 0.9
+LIKELY_OF_WHOLE, LIKELY_OF_PART = 0.4, 0.9
 """Least probability of a manner that no words were found for: of a sentence of one command, and of others or with a hold."""
 _ENDS_A_SENTENCE = re.compile(r"[.!?;:](?=\s|$)")
 _MARKS_AT_START = re.compile(r"^[\s,.;:!?\u2026\u2013\u2014-]+")
@@ -67,10 +69,12 @@ def manner_phrases(sentence: str, log_probability: NDArray[np.float32]) -> list[
         words = list(group)
         if not some:
             continue
-        mean = probability[words].mean(0)
-        best = int(mean[1:].argmax()) + 1
         start, end = spans[words[0]][0], spans[words[-1]][1]
-        if mean[best] >= _LEAST_PROBABILITY and not _COUNTS.search(sentence[start:end]):
+        said = sentence[start:end]
+        share = probability[words].mean(0) * np.exp([0.0, *(_OF_WORDS * np.array(asked_manners(said)))])
+        share /= share.sum()
+        best = int(share[1:].argmax()) + 1
+        if share[best] >= _LEAST_PROBABILITY and not _COUNTS.search(said):
             found.append(MannerPhrase(start, end, MANNERS[best]))
     return found
 
@@ -136,12 +140,12 @@ def with_likely_manner(
     if len(said) == 1:
         commands = {said[0].text: whole}
     is_one_without_hold = len(said) == 1 and not said[0].manner.hold_s  # "wait like that for two seconds" says no tempo
-    least = LIKELY_OF_WHOLE if is_one_without_hold else dict.fromkeys(LIKELY_OF_WHOLE, LIKELY_OF_PART)
+    least = LIKELY_OF_WHOLE if is_one_without_hold else LIKELY_OF_PART
 
     def in_manner(command: PlainCommand) -> PlainCommand:
         probabilities = commands.get(command.text, {})
         for manner in sorted(probabilities, key=lambda name: -probabilities[name]):
-            if probabilities[manner] >= least[manner]:
+            if probabilities[manner] >= least:
                 command = _in_manner(command, manner)
         return command
 

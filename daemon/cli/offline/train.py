@@ -28,6 +28,7 @@ Stage = Literal[
     "tagger",
     "gestures",
     "choice",
+    "manner",
     "average",
     "ablation",
 ]
@@ -73,6 +74,8 @@ def train(
 
     Example, what chooses among the ways to read a sentence: mmmd train choice --out choice.txt
 
+    Example, which words ask for a tempo or a size: mmmd train manner --out manner_words.txt
+
     Example, the mean of models with one start: mmmd train average --models a.safetensors b.safetensors --out c.safetensors
 
     Example, one choice of the recipe changed at a time: mmmd train ablation --data DIR --precision bf16 --run runs/ablation
@@ -84,6 +87,7 @@ def train(
             tagger trains what divides sentences into commands, from the marked sentences that ship (50 minutes, no recipe);
             gestures trains what tells which gesture other words mean, from the phrases that ship (an hour, no recipe);
             choice finds the weights with which one of the ways to read a sentence is chosen (two minutes, no recipe);
+            manner finds the weights of words that ask for a tempo or a size, and manner_choice.txt beside --out (a minute);
             average writes the mean of --models; ablation trains variants of a recipe and prints what the probes and real
             captions say of each.
         config: name of a recipe that ships, or a TOML file (docs/training.md); compact, or ablation for that stage.
@@ -117,7 +121,7 @@ def train(
         raise CommandError(f"train {stage}: --models is for `mmmd train average`, which needs two of them or more")
     if stage == "average":
         return _average(models, out)
-    if stage in ("tagger", "gestures", "choice"):
+    if stage in ("tagger", "gestures", "choice", "manner"):
         return _reader_part(stage, out)
     config = config or ("ablation" if stage == "ablation" else "compact")
     recipe = read_recipe(config, seed)
@@ -175,10 +179,11 @@ def _average(models: Sequence[Path], out: Path | None) -> int:
     return 0
 
 
-def _reader_part(stage: Literal["tagger", "gestures", "choice"], out: Path | None) -> int:
-    """Train and write the sentence tagger, the gesture classifier, or the weights of the choice among readings."""
+def _reader_part(stage: Literal["tagger", "gestures", "choice", "manner"], out: Path | None) -> int:
+    """Train and write a part of the reader: the tagger, the gesture classifier, or weights of readings or of words of manner."""
     from mmm_core.training.choice_training import train_choice
     from mmm_core.training.gesture_training import train_classifier
+    from mmm_core.training.manner_training import train_evidence, train_manner
     from mmm_core.training.tagger_training import train_tagger
 
     if out is None:
@@ -187,6 +192,13 @@ def _reader_part(stage: Literal["tagger", "gestures", "choice"], out: Path | Non
         train_tagger(out)
     elif stage == "gestures":
         train_classifier(out)
+    elif stage == "manner":
+        n_texts, n_pieces = train_manner(out)
+        n, n_manners, n_found = train_evidence(out.with_name("manner_choice.txt"))
+        sys.stdout.write(
+            f"{n_pieces} pieces of {n_texts} texts; {n} sentences, {n_manners} of them with a manner: {n_found} are read right "
+            f"with weights that were found without their set\n"
+        )
     else:
         n, n_possible, n_chosen = train_choice(out)
         sys.stdout.write(

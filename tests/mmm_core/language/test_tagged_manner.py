@@ -26,8 +26,8 @@ from mmm_core.language.tagged_words import MANNERS, words_of
 def _tagged(marked: str) -> tuple[str, np.ndarray]:
     """A sentence, and log-probabilities that are sure of its marks."""
     sentence, manners = read_manner(marked)
-    sure = np.full((len(manners), len(MANNERS)), 0.01)
-    sure[np.arange(len(manners)), [MANNERS.index(manner) for manner in manners]] = 0.96
+    sure = np.full((len(manners), len(MANNERS)), 0.001)
+    sure[np.arange(len(manners)), [MANNERS.index(manner) for manner in manners]] = 0.996
     return sentence, np.log(sure)
 
 
@@ -69,12 +69,12 @@ def test_the_rules_read_what_comes_out(marked: str, commands: list[tuple[str, fl
 
 
 def test_one_phrase_has_one_manner_and_a_doubtful_phrase_has_none() -> None:
-    sentence, log_probability = "nod at a crawl", np.log(np.full((4, 5), 0.01))
+    sentence, log_probability = "nod um eh uh", np.log(np.full((4, 5), 1e-3))  # words that say no manner by themselves
     log_probability[0, 0] = 0.0
-    log_probability[1:, 1] = np.log([0.9, 0.9, 0.4])
-    log_probability[3, 2] = np.log(0.5)
-    assert manner_phrases(sentence, log_probability) == [MannerPhrase(4, 14, "slow")]
-    log_probability[1:, 1] = np.log(0.5)
+    log_probability[1:, 1] = np.log([0.9, 0.9, 0.6])
+    log_probability[3, 2] = np.log(0.3)
+    assert manner_phrases(sentence, log_probability) == [MannerPhrase(4, 12, "slow")]
+    log_probability[1:, :2] = np.log([0.45, 0.5])
     assert manner_phrases(sentence, log_probability) == []
 
 
@@ -116,9 +116,9 @@ def test_a_denial_that_is_nothing_but_a_manner_denies_nothing() -> None:
 
 def test_the_only_command_takes_the_likely_manner_of_the_sentence() -> None:
     found = read("nod like a sleepy cow")
-    slow = with_likely_manner(found, {"slow": LIKELY_OF_WHOLE["slow"], "large": LIKELY_OF_WHOLE["large"] - 0.01})
+    slow = with_likely_manner(found, {"slow": LIKELY_OF_WHOLE, "large": LIKELY_OF_WHOLE - 0.01})
     assert [command.manner for step in slow.steps for command in step] == [read("nod slowly").steps[0][0].manner]
-    assert with_likely_manner(found, {"slow": LIKELY_OF_WHOLE["slow"] - 0.01}) == found
+    assert with_likely_manner(found, {"slow": LIKELY_OF_WHOLE - 0.01}) == found
 
 
 def test_a_manner_that_is_said_stays() -> None:
