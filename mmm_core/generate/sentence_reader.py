@@ -63,11 +63,15 @@ class _Encoded:
         words: states of the sentence's words, or of those of its mirror image, which are the same but for left and right.
         meant: what the sentence most likely asks for.
         is_image: whether the states are those of the mirror image.
+        tags: (N, 8) log-probabilities of the tags of the sentence's N words.
+        manners: (N, 5) log-probabilities of their manners.
     """
 
     words: WordStates
     meant: Meant
     is_image: bool
+    tags: NDArray[np.float32]
+    manners: NDArray[np.float32]
 
 
 class SentenceReader:
@@ -114,17 +118,17 @@ class SentenceReader:
         if ways := self._ways(text, words, states):
             found = chosen(ways)
         else:
-            found = with_left_manner(by_rules, words, manner_phrases(words, self._tagged(states)[1]))
+            found = with_left_manner(by_rules, words, manner_phrases(words, states.manners))
             found = said_at_once(without_repeats(found))
         whole = states.meant
         outside = whole.probability if whole.name == OUTSIDE else 0.0
-        manners = likely_manners(words, whole.manners, self._of_tags(states))
+        manners = likely_manners(words, whole.manners, _of_tags(states))
         return replace(without_denied_acts(with_likely_manner(found, manners), whole), outside=outside)
 
     def manner_evidence(self, text: str) -> tuple[Mapping[str, float], Mapping[str, float]]:
         """The probability of each tempo and size by what a text means as a whole, and the greatest one of any of its words."""
         states = self._states(_in_order(strip_emoji(text)))
-        return states.meant.manners, self._of_tags(states)
+        return states.meant.manners, _of_tags(states)
 
     def ways_to_read(self, text: str) -> Ways | None:
         """The ways to read a text among which one is chosen; None where the rules are sure or no way is known."""
@@ -144,17 +148,13 @@ class SentenceReader:
         is_denial = not by_rules.steps and surely_denies(words)
         if is_denial or not needs_tags(by_rules) or (not by_rules.denied and is_likely_outside(states.meant)):
             return None
-        tags, manners = self._tagged(states)
-        phrases = manner_phrases(words, manners)
+        phrases = manner_phrases(words, states.manners)
         found: list[Candidate] = []
         plain = with_plain_manner(words, phrases)
         if plain != words and 0 < len(words_of(plain)) <= MAX_WORD_PIECES:
             of_plain = self._states(plain, states.meant)
-            found += [
-                replace(one, by_rules=False, sure_rules=False)
-                for one in self._candidates(plain, of_plain, self._tagged(of_plain)[0])
-            ]
-        found += self._candidates(words, states, tags)
+            found += [replace(one, by_rules=False, sure_rules=False) for one in self._candidates(plain, of_plain)]
+        found += self._candidates(words, states)
         if by_rules.denied:  # what is denied must not be done
             found = [one for one in found if one.reading.denied]
         if alternates(by_rules):  # tags take the arms of one command for commands
@@ -168,10 +168,10 @@ class SentenceReader:
         )
         return Ways(candidates, self._classes(commands_of(candidates)), states.meant)
 
-    def _candidates(self, words: str, states: _Encoded, tags: NDArray[np.float32]) -> list[Candidate]:
-        """The readings of words by the rules and by each likely sequence of tags; `tags` has their (N, 8) log-probabilities."""
+    def _candidates(self, words: str, states: _Encoded) -> list[Candidate]:
+        """The readings of words by the rules and by each likely sequence of tags."""
         divisions: dict[MarkedCommands, float] = {}
-        for sequence, log in likely_tags(tags, _DIVISIONS):
+        for sequence, log in likely_tags(states.tags, _DIVISIONS):
             marked = marked_commands(words, without_splits(words, sequence))
             if can_be_read(marked) and (may_deny(words) or not marked.denied):
                 divisions.setdefault(marked, log)
@@ -236,16 +236,13 @@ class SentenceReader:
             mask = torch.ones(1, len(states.states), dtype=torch.bool)
             meant = Meant(*meant_by_states(self._classifier, states.states[None], mask)[0])
             meant = _seen_in_mirror(meant) if is_image else meant
-        return _Encoded(states, meant, is_image)
+        tags, manners = log_probability(self._tagger, states)
+        return _Encoded(states, meant, is_image, tags.numpy(), manners.numpy())
 
-    def _of_tags(self, states: _Encoded) -> dict[str, float]:
-        """The greatest probability of each manner among the words of a sentence."""
-        return dict(zip(MANNERS, np.exp(self._tagged(states)[1].max(0)).tolist(), strict=True))
 
-    def _tagged(self, states: _Encoded) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
-        """The (N, 8) log-probabilities of the tags of a sentence's words, and the (N, 5) ones of their manners."""
-        tags, manners = log_probability(self._tagger, states.words)
-        return tags.numpy(), manners.numpy()
+def _of_tags(states: _Encoded) -> dict[str, float]:
+    """The greatest probability of each manner among the words of a sentence."""
+    return dict(zip(MANNERS, np.exp(states.manners.max(0)).tolist(), strict=True))
 
 
 def _in_order(words: str) -> str:

@@ -6,6 +6,7 @@ import pytest
 
 from mmm_core.corpus.heldout import read_sentences
 from mmm_core.language.manner_words import ASKED, asked_manners, evidence, likely_manners, pieces_of
+from mmm_core.language.mirroring import mirror_words
 from mmm_core.training.manner_training import MANNER_EXPRESSIONS
 
 NONE = dict.fromkeys(ASKED, 0.05)
@@ -48,6 +49,11 @@ def test_probabilities_of_all_sources_count() -> None:
 
 def test_a_drawn_out_word_is_the_same_however_long_it_is() -> None:
     assert pieces_of("sloooow") == pieces_of("SLOOOOOOOW") != pieces_of("slow")
+
+
+def test_a_text_and_its_mirror_image_ask_for_the_same() -> None:
+    text = "raise your left arm and look right, quick as a flash"
+    assert asked_manners(text) == asked_manners(mirror_words(text))
 
 
 def test_no_expression_is_a_sentence_that_measures() -> None:
