@@ -157,7 +157,7 @@ def load_marked_sentences(path: Path = MARKED_SENTENCES) -> list[TaggedSentence]
     Raises:
         TrainingDataError: the file is missing, or a line is not well marked.
     """
-    read = [read_commands(line, path) for line in _lines(path)]
+    read = [read_commands(line, path) for line in lines_of(path)]
     return [
         TaggedSentence(_words(sentence), tags=tuple(tags), gestures=tuple(gestures))
         for sentence, tags, gestures in read
@@ -170,7 +170,7 @@ def load_manner_sentences(path: Path = MANNER_SENTENCES) -> list[TaggedSentence]
     Raises:
         TrainingDataError: the file is missing, or a line is not well marked.
     """
-    read = [read_manner(line, path) for line in _lines(path)]
+    read = [read_manner(line, path) for line in lines_of(path)]
     return [TaggedSentence(_words(sentence), manners=tuple(manners)) for sentence, manners in read]
 
 
@@ -196,7 +196,12 @@ def _words(sentence: str) -> tuple[str, ...]:
     return tuple(sentence[a:b] for a, b in words_of(sentence))
 
 
-def _lines(path: Path) -> list[str]:
+def lines_of(path: Path) -> list[str]:
+    """The lines of a file of sentences, without comments and empty ones.
+
+    Raises:
+        TrainingDataError: the file cannot be read.
+    """
     try:
         lines = path.read_text("utf-8").splitlines()
     except OSError as error:

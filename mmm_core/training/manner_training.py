@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from torch import Tensor
 
 from mmm_core.corpus.heldout import read_sentences
-from mmm_core.corpus.marked_sentences import MANNER_SENTENCES, marked_manners
+from mmm_core.corpus.marked_sentences import MANNER_SENTENCES, lines_of, marked_manners
 from mmm_core.corpus.written_phrases import load_written_phrases
 from mmm_core.errors import TrainingDataError
 from mmm_core.generate.sentence_reader import SentenceReader
@@ -121,7 +121,7 @@ def training_texts(seed: int = 0) -> Texts:
         TrainingDataError: a line of a file cannot be read.
     """
     texts: Texts = []
-    for line in _lines(MANNER_SENTENCES):
+    for line in lines_of(MANNER_SENTENCES):
         sentence, marks = marked_manners(line)
         texts.append((sentence, frozenset(manner for manner, _ in marks)))
         texts += [(words, frozenset({manner})) for manner, words in marks]
@@ -155,7 +155,3 @@ def fitted(texts: Sequence[tuple[str, frozenset[str]]]) -> dict[str, NDArray[np.
         optimiser.step()
     found = weights.detach().numpy()
     return {START: start.detach().numpy()} | {piece: found[i] for piece, i in number.items()}
-
-
-def _lines(path: Path) -> list[str]:
-    return [line for line in path.read_text("utf-8").splitlines() if line.strip() and not line.startswith("#")]

@@ -9,6 +9,7 @@ import pytest
 
 from daemon.client import Client
 from tests.support.harness import RunningDaemon
+from tests.support.live_page import Page, served_page
 from tests.support.robot_states import Servos, SharedDaemon
 from tests.support.streaming import leasing_daemon
 
@@ -48,3 +49,10 @@ def robot(running: RunningDaemon) -> Iterator[Client]:
     """A client of that daemon, its robot armed."""
     with running.armed() as client:
         yield client
+
+
+@pytest.fixture(scope="module")
+def page(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Page]:
+    """The web page of a running daemon, in a browser."""
+    with served_page(tmp_path_factory.mktemp("log")) as one:
+        yield one

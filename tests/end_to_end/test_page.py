@@ -6,7 +6,6 @@ import json
 import os
 import signal
 import subprocess
-from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -16,94 +15,11 @@ from retarget.robot.description import load_description, mujoco
 from retarget.robot.loading import load_robot
 from tests.support.browser import Browser
 from tests.support.harness import MMMD, RunningDaemon, free_ports
+from tests.support.live_page import OUT, SOON_S, Page
 
 pytestmark = pytest.mark.realtime
 
-OUT = Path("out/page")
-SOON_S = 30.0
 SPACE = (" ", "Space", 32, " ")
-WATCH_PLACES = """
-{
-  const watched = [...document.querySelectorAll("#verbs button, #halts button, #say button, #gestures")];
-  document.documentElement.style.overflowAnchor = "none"; // Safari does not keep in place what is in sight
-  globalThis.places = watched.map(() => new Set());
-  globalThis.look = () => watched.forEach((b, k) => places[k].add(JSON.stringify(b.getBoundingClientRect())));
-  const on = () => { look(); globalThis.watch = requestAnimationFrame(on); };
-  on();
-}"""
-"""The page keeps in `places` where each button has been in any frame."""
-
-
-class Page:
-    """A daemon, `mmmd view` for it, and the page in a browser."""
-
-    def __init__(self, daemon: RunningDaemon, browser: Browser, url: str) -> None:
-        self.daemon, self.browser, self.url = daemon, browser, url
-
-    def load(self) -> None:
-        """Open the page and wait until it shows the robot."""
-        self.browser.open(self.url)
-        self.browser.wait(lambda: self.browser.js("globalThis.mmmd?.frames > 0 && !!mmmd.capable"), "the page", SOON_S)
-
-    def say(self, text: str) -> None:
-        self.browser.js("document.querySelector('#text').focus()")
-        self.browser.type(text)
-        self.browser.key("Enter", "Enter", 13, "\r")
-
-    def until(self, *states: str) -> None:
-        """Wait until the page says that the robot is in one of these states."""
-        try:
-            self.browser.wait(lambda: self.browser.text("#state") in states, f"{states} on the page", SOON_S)
-        except AssertionError as error:
-            error.add_note(self.browser.js("document.body.innerText")[-2000:])  # the log comes last
-            raise
-
-    def until_passed(self, state: str, since: int) -> None:
-        """Wait until the page has shown a state, among those after the first `since` of them."""
-        self.browser.wait(
-            lambda: state in self.browser.js(f"mmmd.passed.slice({since})"), f"{state} on the page", SOON_S
-        )
-
-    def rest(self) -> None:
-        """Make the robot stand still under torque, from whatever state, and scroll to the top."""
-        with self.daemon.armed():
-            pass
-        self.until("idle", "holding")
-        self.browser.js("scrollTo(0, 0)")
-
-    def moving(self) -> None:
-        """Make the robot move for long, from whatever state."""
-        self.rest()
-        self.browser.js("mmmd.halt = null; document.querySelector('#halted').textContent = ''")
-        self.browser.js(
-            "document.querySelector('#hold').checked = false; document.querySelector('#loop').checked = true"
-        )
-        self.say("wave with your right hand")
-        self.until("moving")
-
-
-@pytest.fixture(scope="module")
-def page(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Page]:
-    (port,) = free_ports(1)
-    daemon = RunningDaemon("--log", str(tmp_path_factory.mktemp("log") / "run.mcap"))
-    log = (daemon.folder / "view").open("wb")
-    served = subprocess.Popen(
-        [*MMMD, "view", "--http", f"127.0.0.1:{port}", *daemon.at], stdout=log, stderr=log, start_new_session=True
-    )
-    try:
-        with Browser() as browser:
-            daemon.until_ready()
-            page = Page(daemon, browser, f"http://127.0.0.1:{port}/")
-            page.load()
-            yield page
-            assert browser.errors == []
-        served.terminate()
-        assert served.wait(10) == 0
-    finally:
-        served.kill()
-        served.wait()
-        log.close()
-        daemon.close()
 
 
 @pytest.mark.long
@@ -183,90 +99,6 @@ def test_space_in_the_text_box_is_a_space(page: Page) -> None:
     assert page.browser.js("document.querySelector('#text').value") == " "
     page.browser.press("#stop")
     page.until("holding")
-
-
-def test_estop_and_reset_on_a_phone(page: Page) -> None:
-    browser = page.browser
-    browser.size(390, 844, phone=True)
-    try:
-        page.moving()
-        browser.js("document.querySelectorAll('details').forEach((d) => { d.open = true; }); scrollTo(0, 1e6)")
-        for button in ("#stop", "#estop"):
-            place = browser.js(f"JSON.stringify(document.querySelector('{button}').getBoundingClientRect())")
-            left, top, right, bottom = (json.loads(place)[side] for side in ("left", "top", "right", "bottom"))
-            assert 0 <= top < bottom <= 844 and 0 <= left < right <= 390 and bottom - top >= 48
-        assert browser.js("document.documentElement.scrollWidth") <= 390
-        browser.picture(OUT / "phone.png")
-        browser.press("#estop")
-        page.until("estop")
-        assert "reset" in browser.text("#needs")
-        browser.js("document.querySelector('[data-verb=reset]').scrollIntoView({ block: 'center' })")
-        browser.press("[data-verb=reset]")
-        page.until("limp")
-    finally:
-        browser.size(1280, 800)
-
-
-@pytest.mark.parametrize("screen", ["phone", pytest.param("desktop", marks=pytest.mark.long)])
-def test_no_button_moves_when_the_page_tells_something(page: Page, screen: str) -> None:
-    """What moves between press and release is not pressed: a reset after an e-stop was lost when the text above became shorter."""
-    browser = page.browser
-    if screen == "phone":
-        browser.size(390, 844, phone=True)
-    try:
-        page.moving()
-        browser.js("document.querySelector('#verbs').scrollIntoView({ block: 'center' })")
-        browser.js(WATCH_PLACES)
-        page.say("raise your right arm as high as you can, then wave with it, nod twice, and cross your arms")
-        browser.wait(lambda: "nod" in browser.text("#running"), "a long text", SOON_S)
-        browser.press("#stop")
-        page.until("holding")
-        browser.press("#estop")
-        page.until("estop")
-        browser.press("[data-verb=arm]")
-        browser.wait(lambda: "reset" in browser.text("#answer"), "what it needs first", SOON_S)
-        browser.js("lost.hidden = false; lost.textContent = 'Lost. '.repeat(30); look()")
-        browser.press("[data-verb=reset]")
-        page.until("limp")
-        for places in browser.js("places.map((p) => [...p])"):
-            assert len(places) == 1, places
-    finally:
-        browser.js("cancelAnimationFrame(globalThis.watch); document.documentElement.style.overflowAnchor = ''")
-        browser.size(1280, 800)
-
-
-def test_the_page_tells_what_became_of_a_verb(page: Page) -> None:
-    browser = page.browser
-    page.rest()
-
-    def until_told(verb: str, told: str) -> None:
-        browser.press(f"[data-verb={verb}]")
-        browser.wait(lambda: told in browser.text("#answer"), told, SOON_S)
-
-    until_told("torque", "torque off: carried out, the robot is limp")
-    until_told("arm", "arm: carried out, the robot is idle")
-    until_told("park", "park: carried out, the robot is limp")
-    browser.press("#estop")
-    page.until("estop")
-    until_told("arm", "arm: the robot is in e-stop")
-    assert browser.js("document.querySelector('#answer').className") == "bad"
-    until_told("reset", "reset: carried out, the robot is limp")
-
-
-def test_a_verb_goes_by_a_second_way_when_its_connection_is_lost(page: Page) -> None:
-    browser = page.browser
-    page.rest()
-    browser.js("mmmd.ctl.connect = () => {}; mmmd.ctl.socket.close()")
-    try:
-        browser.press("[data-verb=torque]")
-        told = "torque off: carried out, the robot is limp"
-        browser.wait(lambda: browser.text("#answer") == told, "the answer by POST", SOON_S)
-        browser.js("globalThis.kept = fetch; globalThis.fetch = async () => { throw new TypeError(); }")
-        browser.press("[data-verb=arm]")
-        browser.wait(lambda: "arm: NO ANSWER" in browser.text("#answer"), "that nothing got through", SOON_S)
-    finally:
-        browser.js("globalThis.fetch = globalThis.kept ?? fetch; delete mmmd.ctl.connect; mmmd.ctl.connect()")
-    browser.wait(lambda: browser.js("mmmd.ctl.open"), "the connection again", SOON_S)
 
 
 @pytest.mark.long
