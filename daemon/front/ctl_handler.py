@@ -12,6 +12,7 @@ import time
 from collections.abc import Awaitable, Callable
 
 from daemon.ctl.channel import FRONT_SERVES_S, Answered, Channel, Handed, Ready, Told
+from daemon.front.late_requests import refused_as_late
 from daemon.scheduling.scheduler import Scheduler
 from daemon.shared_memory.bus_link import BusLink
 from daemon.shared_memory.request_words import Asked, BusRequest
@@ -61,6 +62,7 @@ class CtlHandler:
         self._channel: Channel | None = None
         self._answers: list[Answered] = []
         self._ending: set[asyncio.Task[None]] = set()
+        self._started_s = time.monotonic()
 
     def attach(self, channel: Channel) -> None:
         """Serve this channel from now on; the previous channel belonged to a process that is gone."""
@@ -123,6 +125,8 @@ class CtlHandler:
             self._halted(trigger, Asked(kind, handed.number), request)
         elif not isinstance(request, Status) and time.monotonic_ns() - handed.number // 2 > 1e9 * FRONT_SERVES_S:
             log.warning("%s came too late from the ctl process and is not carried out", tag_of(request))
+        elif (refused := refused_as_late(request, time.monotonic(), self._started_s)) is not None:
+            self._send_event(handed.number, refused)
         elif isinstance(request, Park) or (isinstance(request, Torque) and not request.on):
             self._halt(handed.number, request)
         else:

@@ -21,6 +21,7 @@ from daemon.wire.compositions import (
     SceneOf,
     Story,
 )
+from daemon.wire.ctl_requests import Arm, Estop, Park, Reset, Stop, Torque, TorqueRequest
 from daemon.wire.lease_requests import LONGEST_SILENCE_S, SHORTEST_SILENCE_S, Lease, Release, Target
 from daemon.wire.request_base import (
     IDLE_STYLES,
@@ -102,6 +103,8 @@ __all__ = [
     "Story",
     "Target",
     "Text",
+    "Torque",
+    "TorqueRequest",
     "tag_of",
 ]
 
@@ -217,39 +220,6 @@ class Cancel(Request, tag="cancel"):
 
 class Status(Request, tag="status"):
     """Request a `state` event."""
-
-
-class Stop(Request, tag="stop"):
-    """Decelerate within the limits, hold, drop what was planned."""
-
-
-class Estop(Request, tag="estop"):
-    """Cut torque at once, or brake and hold where the daemon is set so (`estop = "hold"`); latched until `reset`.
-
-    Where it holds already a second one cuts.
-    """
-
-
-class Reset(Request, tag="reset"):
-    """Leave e-stop or fault: the robot is limp afterwards and must be armed."""
-
-
-class Arm(Request, tag="arm"):
-    """Torque on over a goal pinned to the measured pose, then a slow move to the rest pose."""
-
-
-class Park(Request, tag="park"):
-    """Move to the park pose, then torque off."""
-
-
-class Torque(Request, tag="torque"):
-    """Torque on as by `arm`; or off: brake within the limits, then limp where it stands, until an explicit `arm`.
-
-    Attributes:
-        on: whether torque goes on.
-    """
-
-    on: bool
 
 
 CmdRequest = (

@@ -103,15 +103,17 @@ $("text").addEventListener("keydown", (e) => {
   $("text").value = back < 0 ? "" : said[back];
 });
 
-// ---- verbs: by POST where the connection is not open. Never twice: an arm that arrives late could undo what was pressed after it
+// ---- verbs: by POST where the connection is not open. Never twice: an arm that arrives late could undo what was pressed after it.
+// Each names the state that was on the screen: held up on its way for 3 s, it is refused by the daemon. A stop names none.
 const DONE = { arm: /idle|holding|moving/, park: /limp/, torque: /limp/, reset: /limp|arming|idle|holding|moving/ };
 const PATIENCE_MS = 3000;
 $("verbs").addEventListener("click", (e) => {
   const verb = e.target.dataset?.verb, name = e.target.textContent;
   if (!verb) return;
-  const request = { ...stamp(), type: verb, id: newId(), ...(verb === "torque" ? { on: false } : {}) };
+  if (!view.state) return answer(`${name}: not sent; the robot's state has not been seen yet: wait until the page shows it`, "bad");
+  const request = { ...stamp(), type: verb, id: newId(), state_t_mono: view.state.t_mono, ...(verb === "torque" ? { on: false } : {}) };
   const asked = view.asked = { id: request.id, verb, name, ackS: null, from: "" };
-  const silent = () => { if (view.asked === asked && asked.ackS === null) answer(`${name}: NO ANSWER; look at the robot's state before you press again`, "bad"); };
+  const silent = () => { if (view.asked === asked && asked.ackS === null) answer(`${name}: NO ANSWER; not carried out if it arrives later than 3 s after the press. Look at the robot's state before you press again`, "bad"); };
   answer(`${name}: sent`);
   if (ctl.send(request)) { setTimeout(silent, PATIENCE_MS); return; }
   answer(`${name}: the connection is lost; sent by another way`, "warn");

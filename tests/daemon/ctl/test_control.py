@@ -152,6 +152,18 @@ def test_an_estop_cuts_or_holds_as_the_daemon_is_set(holds, kind):
         ctl.close()
 
 
+@pytest.mark.parametrize("state_s", ["-1e300", "1e300", "null", '"old"', "true", '{"a": [1]}', "[" * 900 + "]" * 900])
+@pytest.mark.parametrize("verb", ["stop", "estop"])
+def test_a_stop_is_carried_out_whatever_state_it_names(ctl, verb, state_s):
+    """`arm`, `reset`, `park` and `torque` are refused with an old state; the field must never cost a stop."""
+    ctl.ask(f'{{"type": "{verb}", "id": "now", "state_t_mono": {state_s}}}'.encode())
+    ctl.turn()
+    assert ctl.bus_takes() == [BusRequest[verb.upper()]]
+    ctl.front_answers()
+    [ack] = ctl.turn(2)
+    assert isinstance(ack, ev.Ack) and (ack.id, ack.verb, ack.carried_out) == ("now", verb, True)
+
+
 def test_the_reply_says_that_it_is_carried_out(ctl):
     ctl.ask("estop")
     assert ctl.turn() == [], "neither the bus process nor the front has said anything"

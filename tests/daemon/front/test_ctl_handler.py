@@ -4,81 +4,17 @@ from __future__ import annotations
 
 import asyncio
 import time
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
-from daemon.ctl.channel import FRONT_SERVES_S, Answered, Channel, Handed, pair
-from daemon.front.ctl_handler import UNTOLD_S, CtlHandler
-from daemon.scheduling.command_queue import StopOrdering
-from daemon.shared_memory.bus_link import BusLink, BusRequest
-from daemon.shared_memory.request_words import Asker
-from daemon.state.ledger import Ledger
-from daemon.state.machine import RobotState, StateMachine
+from daemon.ctl.channel import FRONT_SERVES_S, Answered
+from daemon.front.ctl_handler import UNTOLD_S
+from daemon.shared_memory.bus_link import BusRequest
+from daemon.state.machine import RobotState
 from daemon.wire import codec as wire
 from daemon.wire import events as ev
-
-
-class Front:
-    """A desk among stand-ins, the process behind `ctl` at the other end."""
-
-    def __init__(self, link: BusLink, state: RobotState = RobotState.MOVING) -> None:
-        self.link, self.ctl = link, BusLink.attach(link.path, link.n_joints, asker=Asker.CTL)
-        self.machine, self.halts, self.ended = StateMachine(), StopOrdering(), []
-        self.machine.state = state
-        self.follower = SimpleNamespace(stopped=False, bus_alive=True)
-        performer = SimpleNamespace(
-            machine=self.machine,
-            follower=self.follower,
-            halts=self.halts,
-            end_halted=lambda: self.ended.append(self.halts.by),
-        )
-        self.drained = asyncio.Event()
-        self.published: list[ev.Event] = []
-        ledger = Ledger(lambda *_: None, self.published.append)
-        self.desk = CtlHandler(link, performer, ledger, self.drained.wait, lambda: None, self.published.append)
-        ours, theirs = pair()
-        self.far = Channel(theirs)
-        self.desk.attach(Channel(ours))
-
-    def halted(self, verb: str, *, told: bool = True) -> int:
-        number = self.ctl.new_number()
-        self.ctl.request(BusRequest[verb.upper()], number=number)
-        if told:
-            self.handed(verb, number)
-        return number
-
-    def handed(self, verb: str, number: int) -> None:
-        assert self.far.send(Handed(number, verb.encode()))
-
-    def answer(self) -> Answered | None:
-        message = self.far.receive()
-        return message if isinstance(message, Answered) else None
-
-
-def run(test, state: RobotState = RobotState.MOVING):
-    """A test as a coroutine on a front of its own."""
-    link = BusLink.create(2)
-
-    async def body() -> None:
-        front = Front(link, state)
-        front.drained.set()
-        try:
-            await test(front)
-        finally:
-            front.desk.detach()
-            front.far.close()
-
-    try:
-        asyncio.run(body())
-    finally:
-        link.close()
-
-
-async def soon() -> None:
-    for _ in range(5):
-        await asyncio.sleep(0)
+from tests.support.ctl_front import Front, run, soon
 
 
 @pytest.mark.parametrize("verb", ["stop", "estop"])
