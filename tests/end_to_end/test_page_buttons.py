@@ -6,6 +6,7 @@ import json
 
 import pytest
 
+from daemon.front.late_requests import OLDEST_STATE_S
 from tests.support.live_page import OUT, SOON_S, Page
 
 pytestmark = pytest.mark.realtime
@@ -20,6 +21,14 @@ WATCH_PLACES = """
   on();
 }"""
 """The page keeps in `places` where each button has been in any frame."""
+HOLD_BACK = """
+{
+  const socket = mmmd.ctl.socket;
+  globalThis.held = [];
+  socket.send = (frame) => held.push(frame);
+  globalThis.letGo = () => { delete socket.send; held.forEach((frame) => socket.send(frame)); };
+}"""
+"""The connection of the verbs stalls: it stays open, and what is sent lies in `held` until `letGo`."""
 
 
 def test_estop_and_reset_on_a_phone(page: Page) -> None:
@@ -104,3 +113,56 @@ def test_a_verb_goes_by_a_second_way_when_its_connection_is_lost(page: Page) -> 
     finally:
         browser.js("globalThis.fetch = globalThis.kept ?? fetch; delete mmmd.ctl.connect; mmmd.ctl.connect()")
     browser.wait(lambda: browser.js("mmmd.ctl.open"), "the connection again", SOON_S)
+
+
+def test_an_arm_that_a_stalled_connection_held_back_is_refused(page: Page) -> None:
+    """A Wi-Fi hole: the connection still counts as open, and what was pressed arrives when nobody expects it any more."""
+    browser = page.browser
+    page.rest()
+    browser.press("[data-verb=torque]")
+    page.until("limp")
+    browser.js(HOLD_BACK)
+    since = browser.js("mmmd.passed.length")
+    browser.press("[data-verb=arm]")
+    browser.wait(lambda: "arm: NO ANSWER" in browser.text("#answer"), "that nothing got through", SOON_S)
+    age_s = "mmmd.state.t_mono - JSON.parse(held[0]).state_t_mono"
+    browser.wait(lambda: browser.js(age_s) > OLDEST_STATE_S, "a frame held back for longer than the limit", SOON_S)
+    assert browser.js("JSON.parse(held[0]).type") == "arm"
+    browser.js("letGo()")
+    browser.wait(lambda: "arm: the newest state" in browser.text("#answer"), "the refusal", SOON_S)
+    assert "s old when it arrived; not carried out: look at the robot" in browser.text("#answer")
+    with page.daemon.client() as client:
+        assert client.status().state == "limp"
+    assert browser.js(f"mmmd.passed.slice({since})") == []
+    browser.press("[data-verb=arm]")
+    told = "arm: carried out, the robot is idle"
+    browser.wait(lambda: browser.text("#answer") == told, "a new press counts", SOON_S)
+
+
+def test_a_page_without_a_new_state_cannot_arm_by_either_way(page: Page) -> None:
+    browser = page.browser
+    page.rest()
+    browser.press("[data-verb=torque]")
+    page.until("limp")
+    browser.js("mmmd.state = null; document.querySelector('[data-verb=arm]').click()")
+    assert "arm: not sent" in browser.text("#answer")
+    page.until("limp")
+    browser.wait(lambda: browser.js("!!mmmd.state"), "a state", SOON_S)
+    press_on_an_old_state = """
+        mmmd.state = { ...mmmd.state, t_mono: mmmd.state.t_mono - 60 };
+        document.querySelector('#answer').textContent = '';
+        document.querySelector('[data-verb=arm]').click()"""
+    try:
+        for way in ("WebSocket", "POST"):
+            if way == "POST":
+                browser.js("mmmd.ctl.connect = () => {}; mmmd.ctl.socket.close()")
+            browser.js(press_on_an_old_state)
+            browser.wait(lambda: "not carried out: look" in browser.text("#answer"), f"the refusal by {way}", SOON_S)
+        browser.wait(lambda: browser.js("true") and browser.errors, "Chromium's own line of the answer 409", SOON_S)
+        assert ["409" in line for line in browser.errors] == [True]
+        browser.errors.clear()
+    finally:
+        browser.js("delete mmmd.ctl.connect; mmmd.ctl.open || mmmd.ctl.connect()")
+    browser.wait(lambda: browser.js("mmmd.ctl.open"), "the connection again", SOON_S)
+    with page.daemon.client() as client:
+        assert client.status().state == "limp"
