@@ -21,8 +21,9 @@ import pytest
 import tyro
 
 from daemon.cli.program import COMMANDS
-from daemon.wire.codec import decode_cmd, decode_target
+from daemon.wire.codec import decode_cmd, decode_ctl, decode_target
 from daemon.wire.events import EVENTS as EVENT_TYPES
+from daemon.wire.requests import CMD_TYPES, tag_of
 from sim.faults import FaultSchedule
 from tests.support.pages import ROOT, Block, assert_prints, blocks, help_examples
 from tests.support.terminal import Terminal, terminal
@@ -97,8 +98,10 @@ def test_messages_on_pages_are_messages(block: Block) -> None:
             assert set(re.findall(r'"(\w+)":', top_level(message))) <= known, message
         elif kind[1] == "target":
             decode_target(message.replace("[0.1, ...]", "[0.1]").replace("ITS SECRET", 16 * "s").encode())
-        else:
+        elif kind[1] in map(tag_of, CMD_TYPES):
             decode_cmd(message.encode())
+        else:
+            decode_ctl(message.encode())
 
 
 @pytest.mark.parametrize("block", [b for found in PAGES.values() for b in found if b.kind == "toml"], ids=str)

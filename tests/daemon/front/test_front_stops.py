@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import json
 import threading
 
 import pytest
 
 from daemon.client import CancelledByError, Client, RefusedError
+from daemon.front.late_requests import OLDEST_STATE_S
 from daemon.wire import codec as wire
 from daemon.wire import events as ev
 from daemon.wire import requests
@@ -95,6 +97,25 @@ def test_torque_off_goes_limp_and_waits_for_an_arm(robot, running):
         robot.say("wave")
     robot.arm()
     assert robot.say("wave").done
+
+
+def test_an_arm_counts_only_with_a_new_state_of_this_daemon(robot, running, context):
+    """The time in a `state` event is of the clock that the daemon compares it with."""
+    robot.torque_off()
+    ctl = dealer(context, running.endpoints.ctl)
+
+    def ask(verb: str, age_s: float) -> ev.Event:
+        state_s = robot.status().t_mono - age_s
+        ctl.send(json.dumps({"type": verb, "id": verb, "state_t_mono": state_s}).encode())
+        return wire.decode_event(ctl.recv())
+
+    for verb, age_s in (("arm", OLDEST_STATE_S + 1), ("reset", 1e9), ("park", -1e9)):
+        refused = ask(verb, age_s)
+        assert isinstance(refused, ev.Rejected) and (refused.id, refused.code) == (verb, "stale_state")
+    assert robot.status().state == "limp"
+    assert isinstance(ask("arm", 0), ev.Ack)
+    robot.wait_for("idle", timeout_s=20)
+    assert isinstance(ask("stop", 1e9), ev.Ack)
 
 
 @pytest.mark.long

@@ -50,7 +50,7 @@ def asked(request: dict, state_s: object) -> str:
         (1e300, "still to come"),
     ],
 )
-def test_a_verb_is_refused_when_the_state_that_it_names_is_too_old_or_of_another_daemon(verb, state_s, found):
+def test_a_verb_on_an_old_or_foreign_state_is_refused(verb, state_s, found):
     request = wire.decode_ctl(asked(VERBS[verb][0], state_s).encode())
     refused = refused_as_late(request, NOW_S, STARTED_S)
     if not found:
@@ -79,7 +79,7 @@ def test_a_client_that_names_no_state_sends_no_field(kind):
 
 
 @pytest.mark.parametrize("verb", VERBS)
-def test_a_late_verb_asks_nothing_of_the_bus_process_and_ends_no_command(verb):
+def test_a_late_verb_reaches_no_bus_process_and_ends_no_command(verb):
     request, state, _ = VERBS[verb]
 
     async def test(front: Front) -> None:
