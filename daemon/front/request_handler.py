@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import asyncio
 import importlib.metadata
+import time
 from collections.abc import Callable
 
 from daemon.errors import ClipError, GestureExistsError, UnknownGestureError
 from daemon.front.conversations import Client, Conversations
+from daemon.front.late_requests import refused_as_late
 from daemon.front.publisher import TOPICS
 from daemon.front.stop_texts import asks_to_stop
 from daemon.generator.client import GeneratorClient
@@ -72,6 +74,7 @@ class RequestHandler:
         self._performer, self._sources = performer, sources
         self._ledger, self._generator, self._state = ledger, generator, state
         self._conversations = Conversations(self._words_of)
+        self._started_s = time.monotonic()
 
     @property
     def library(self) -> GestureLibrary:
@@ -81,17 +84,26 @@ class RequestHandler:
     def take(self, request: Request, route: Route, t_received_ns: int, client: Client) -> None:
         """Carry out a request of a client and answer it.
 
+        A request that was held up on its way comes no further than here: it is neither remembered as said nor generated, queued
+        or played. A text that means to stop is carried out however old, and an id that is known names a command that was judged
+        when it came first.
+
         Raises:
             WireError: its id belongs to another request.
         """
+        late = refused_as_late(request, t_received_ns * 1e-9, self._started_s)
         if isinstance(request, Command):
             entry = self._ledger.open(request, route, t_received_ns)
-            if entry is not None and asks_to_stop(request):
+            if entry is None:
+                return
+            if asks_to_stop(request):
                 self._performer.stop_for(entry)
-            elif entry is not None:
+            elif late is not None:
+                self._ledger.emit(entry, late)
+            else:
                 self._play(entry, client)
             return
-        event = self._answer(request)
+        event = late or self._answer(request)
         event.id = request.id
         self._ledger.reply(route, event)
 

@@ -177,5 +177,5 @@ def _any_number(event: Event) -> bool:
 
 
 def _without_stamp(request: Command) -> Command:
-    """The request without number, time and clock, which differ between two sendings of one request."""
-    return msgspec.structs.replace(request, seq=None, t_mono=None, clock=None)
+    """The request without number, time, clock and shown state, which differ between two sendings of one request."""
+    return msgspec.structs.replace(request, seq=None, t_mono=None, clock=None, state_t_mono=None)

@@ -1,24 +1,18 @@
-"""Requests on `ctl`: the stops, and the verbs that switch torque or lead the robot on. No I/O.
-
-A field that is not set is not encoded, so that a daemon of before this field reads the stop of a newer client.
-"""
+"""Requests on `ctl`: the stops, and the verbs that switch torque or lead the robot on. No I/O."""
 
 from __future__ import annotations
 
 from typing import Annotated, Any
 
-from msgspec import UNSET, Meta, UnsetType
+from msgspec import UNSET, Meta
 
-from daemon.wire.request_base import Request
+from daemon.wire.request_base import Request, TimelyRequest
 
-ShownState = Annotated[
-    float, Meta(description="`t_mono` of the newest state that the sender has shown; too old: refused")
-]
 Unread = Annotated[Any, Meta(description="accepted with any value and never read: nothing delays a stop")]
 
 
 class HaltRequest(Request, kw_only=True):
-    """A stop. It may carry the field of `TorqueRequest`, with any value, and is carried out all the same.
+    """A stop. It may carry the field of `TimelyRequest`, with any value, and is carried out all the same.
 
     Attributes:
         state_t_mono: never read.
@@ -29,17 +23,6 @@ class HaltRequest(Request, kw_only=True):
     def __post_init__(self) -> None:
         """Drop the value, which may be nested too deeply for those who read requests."""
         self.state_t_mono = UNSET
-
-
-class TorqueRequest(Request, kw_only=True):
-    """A verb that is meant for the robot as its sender sees it, and dangerous once nobody expects it any more.
-
-    Attributes:
-        state_t_mono: `t_mono` of the newest `state` event that the sender has shown; when the request arrives with a state that
-            is too old, it is refused (`daemon.front.late_requests`). Unset or None: the request is not checked.
-    """
-
-    state_t_mono: ShownState | UnsetType | None = UNSET
 
 
 class Stop(HaltRequest, tag="stop"):
@@ -53,19 +36,19 @@ class Estop(HaltRequest, tag="estop"):
     """
 
 
-class Reset(TorqueRequest, tag="reset"):
+class Reset(TimelyRequest, tag="reset"):
     """Leave e-stop or fault: the robot is limp afterwards and must be armed."""
 
 
-class Arm(TorqueRequest, tag="arm"):
+class Arm(TimelyRequest, tag="arm"):
     """Torque on over a goal pinned to the measured pose, then a slow move to the rest pose."""
 
 
-class Park(TorqueRequest, tag="park"):
+class Park(TimelyRequest, tag="park"):
     """Move to the park pose, then torque off."""
 
 
-class Torque(TorqueRequest, tag="torque", kw_only=True):
+class Torque(TimelyRequest, tag="torque", kw_only=True):
     """Torque on as by `arm`; or off: brake within the limits, then limp where it stands, until an explicit `arm`.
 
     Attributes:

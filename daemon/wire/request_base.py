@@ -1,11 +1,14 @@
-"""Fields that requests have in common, and the options of playing a motion. No I/O."""
+"""Fields that requests have in common, and the options of playing a motion. No I/O.
+
+A field that may be unset is not encoded then, so that a daemon of before this field reads the request of a newer client.
+"""
 
 from __future__ import annotations
 
 from typing import Annotated, Literal, TypedDict
 
 import msgspec
-from msgspec import Meta
+from msgspec import UNSET, Meta, UnsetType
 
 PROTOCOL_VERSION = 1
 MAX_TEXT_CHARS = 2000
@@ -23,6 +26,9 @@ IDLE_STYLES = ("calm", "lively")
 
 Id = Annotated[str, Meta(max_length=MAX_ID_CHARS, description="chosen by the sender; the same id twice is one command")]
 Text = Annotated[str, Meta(min_length=1, max_length=MAX_TEXT_CHARS)]
+ShownState = Annotated[
+    float, Meta(description="`t_mono` of the newest state that the sender has shown; too old: refused")
+]
 Name = Annotated[str, Meta(pattern=r"^[a-z0-9][a-z0-9_]{0,63}$", description="lower case letters, digits and _")]
 
 
@@ -44,7 +50,18 @@ class Request(msgspec.Struct, tag_field="type", forbid_unknown_fields=True, kw_o
     clock: Annotated[str, Meta(max_length=MAX_CLOCK_CHARS)] | None = None
 
 
-class Command(Request, kw_only=True):
+class TimelyRequest(Request, kw_only=True):
+    """A request that is meant for the robot as its sender sees it, and dangerous once nobody expects it any more.
+
+    Attributes:
+        state_t_mono: `t_mono` of the newest `state` event that the sender has shown; when the request arrives with a state that
+            is too old, it is refused (`daemon.front.late_requests`). Unset or None: the request is not checked.
+    """
+
+    state_t_mono: ShownState | UnsetType | None = UNSET
+
+
+class Command(TimelyRequest, kw_only=True):
     """Fields of every request that moves the robot: the time of its turn.
 
     Attributes:

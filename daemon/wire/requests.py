@@ -21,7 +21,7 @@ from daemon.wire.compositions import (
     SceneOf,
     Story,
 )
-from daemon.wire.ctl_requests import Arm, Estop, Park, Reset, Stop, Torque, TorqueRequest
+from daemon.wire.ctl_requests import Arm, Estop, Park, Reset, Stop, Torque
 from daemon.wire.lease_requests import LONGEST_SILENCE_S, SHORTEST_SILENCE_S, Lease, Release, Target
 from daemon.wire.request_base import (
     IDLE_STYLES,
@@ -45,6 +45,7 @@ from daemon.wire.request_base import (
     PlayOptions,
     Request,
     Text,
+    TimelyRequest,
     tag_of,
 )
 
@@ -103,8 +104,8 @@ __all__ = [
     "Story",
     "Target",
     "Text",
+    "TimelyRequest",
     "Torque",
-    "TorqueRequest",
     "tag_of",
 ]
 
@@ -180,7 +181,7 @@ class Record(Request, tag="record", kw_only=True):
     replace: bool = False
 
 
-class Look(Request, tag="look"):
+class Look(TimelyRequest, tag="look"):
     """Turn the head during any motion; without angles the head follows the motion again.
 
     Attributes:
@@ -192,7 +193,7 @@ class Look(Request, tag="look"):
     pitch_deg: Annotated[float, Meta(ge=-80, le=80)] | None = None
 
 
-class Idle(Request, tag="idle"):
+class Idle(TimelyRequest, tag="idle"):
     """Play small movements of breath and gaze while no command is played.
 
     Attributes:

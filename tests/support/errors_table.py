@@ -215,7 +215,7 @@ ANSWERED = (
         "queue_full", "too many commands wait", "wait, or cancel some", "daemon/scheduling/test_commands.py",
     ),
     Answered(
-        "stale_state", "a verb on ctl names a state of the robot that is older than 3 s or of another daemon: it was held up on its way",
+        "stale_state", "a request names a state of the robot that is older than 3 s or of another daemon: it was held up on its way",
         "look at the robot and its newest state, then ask again", "daemon/front/test_late_requests.py",
     ),
     Answered(

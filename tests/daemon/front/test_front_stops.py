@@ -118,6 +118,30 @@ def test_an_arm_counts_only_with_a_new_state_of_this_daemon(robot, running, cont
     assert isinstance(ask("stop", 1e9), ev.Ack)
 
 
+def test_a_late_text_does_not_arm_a_limp_robot_and_a_late_stop_stops(robot, running, context):
+    """A text that a stalled connection held back armed a limp robot by itself."""
+    robot.park()
+    robot.wait_for("limp", timeout_s=20)
+    cmd = dealer(context, running.endpoints.cmd)
+
+    def ask(text: str, age_s: float) -> ev.Event:
+        request = requests.Say(text=text, seconds=4.0, state_t_mono=robot.status().t_mono - age_s)
+        cmd.send(stamped(request))
+        return wire.decode_event(cmd.recv())
+
+    for age_s in (OLDEST_STATE_S + 1, 1e9, -1e9):
+        refused = ask("wave", age_s)
+        assert isinstance(refused, ev.Rejected) and (refused.code, refused.asked) == ("stale_state", "say 'wave'")
+    status = robot.status()
+    assert (status.state, status.command, status.waiting, status.must_arm) == ("limp", None, [], False)
+    assert isinstance(ask("wave", 0), ev.Accepted)
+    robot.wait_for("moving", timeout_s=20)
+    cmd.send(stamped(requests.Say(text="stop moving", state_t_mono=-1.0)))
+    events = hear(cmd, ev.Ack)
+    assert [e.by for e in events if isinstance(e, ev.Cancelled)] == ["stop"]
+    assert robot.wait_for("holding", timeout_s=3).command is None
+
+
 @pytest.mark.long
 def test_park_goes_limp_and_the_next_text_arms(robot, running):
     thread, outcome = say_in_thread(robot, running, "wave", 4.0)

@@ -1,4 +1,4 @@
-"""A verb that names an old state of the robot is refused, and nothing else is; a stop is carried out whatever it names."""
+"""A request that names an old state of the robot is refused, and nothing else is; a stop is carried out whatever it names."""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ from daemon.state.machine import RobotState
 from daemon.wire import codec as wire
 from daemon.wire import events as ev
 from daemon.wire import requests
+from tests.support.cmd_front import COMMANDS
 from tests.support.ctl_front import Front, run, soon
 
 STARTED_S, NOW_S = 1000.0, 5000.0
@@ -32,7 +33,7 @@ def asked(request: dict, state_s: object) -> str:
     return json.dumps(request | {"id": "pressed", "state_t_mono": state_s})
 
 
-@pytest.mark.parametrize("verb", VERBS)
+@pytest.mark.parametrize("name", [*VERBS, *COMMANDS])
 @pytest.mark.parametrize(
     ("state_s", "found"),
     [
@@ -50,15 +51,16 @@ def asked(request: dict, state_s: object) -> str:
         (1e300, "still to come"),
     ],
 )
-def test_a_verb_on_an_old_or_foreign_state_is_refused(verb, state_s, found):
-    request = wire.decode_ctl(asked(VERBS[verb][0], state_s).encode())
+def test_a_request_on_an_old_or_foreign_state_is_refused(name, state_s, found):
+    frame = asked(VERBS[name][0] if name in VERBS else COMMANDS[name], state_s).encode()
+    request = wire.decode_ctl(frame) if name in VERBS else wire.decode_cmd(frame)
     refused = refused_as_late(request, NOW_S, STARTED_S)
     if not found:
         assert refused is None
         return
-    assert refused is not None and (refused.id, refused.code, refused.asked) == ("pressed", "stale_state", verb)
+    assert refused is not None and (refused.id, refused.code, refused.asked) == ("pressed", "stale_state", name)
     assert found in refused.found and "3 s" in refused.allowed
-    assert "not carried out" in refused.do and ("`estop`" in refused.do) == (verb == "torque off")
+    assert "not carried out" in refused.do and ("`estop`" in refused.do) == (name == "torque off")
 
 
 def test_a_state_of_before_a_restart_is_refused_though_it_is_new():
