@@ -23,12 +23,18 @@ WATCH_PLACES = """
 """The page keeps in `places` where each button has been in any frame."""
 HOLD_BACK = """
 {
-  const socket = mmmd.ctl.socket;
+  const socket = mmmd.LINE.socket;
   globalThis.held = [];
   socket.send = (frame) => held.push(frame);
   globalThis.letGo = () => { delete socket.send; held.forEach((frame) => socket.send(frame)); };
 }"""
-"""The connection of the verbs stalls: it stays open, and what is sent lies in `held` until `letGo`."""
+"""A connection (LINE: cmd or ctl) stalls: it stays open, and what is sent lies in `held` until `letGo`."""
+SAY_ON = """
+    mmmd.state = STATE;
+    document.querySelector('#text').value = 'TEXT';
+    document.querySelector('#say').requestSubmit()"""
+"""A text is sent while STATE is the newest that the page has."""
+HELD_FOR_S = "mmmd.state.t_mono - JSON.parse(held[0]).state_t_mono"
 
 
 def test_estop_and_reset_on_a_phone(page: Page) -> None:
@@ -121,12 +127,11 @@ def test_an_arm_that_a_stalled_connection_held_back_is_refused(page: Page) -> No
     page.rest()
     browser.press("[data-verb=torque]")
     page.until("limp")
-    browser.js(HOLD_BACK)
+    browser.js(HOLD_BACK.replace("LINE", "ctl"))
     since = browser.js("mmmd.passed.length")
     browser.press("[data-verb=arm]")
     browser.wait(lambda: "arm: NO ANSWER" in browser.text("#answer"), "that nothing got through", SOON_S)
-    age_s = "mmmd.state.t_mono - JSON.parse(held[0]).state_t_mono"
-    browser.wait(lambda: browser.js(age_s) > OLDEST_STATE_S, "a frame held back for longer than the limit", SOON_S)
+    browser.wait(lambda: browser.js(HELD_FOR_S) > OLDEST_STATE_S, "a frame held back for longer than the limit", SOON_S)
     assert browser.js("JSON.parse(held[0]).type") == "arm"
     browser.js("letGo()")
     browser.wait(lambda: "arm: the newest state" in browser.text("#answer"), "the refusal", SOON_S)
@@ -137,6 +142,46 @@ def test_an_arm_that_a_stalled_connection_held_back_is_refused(page: Page) -> No
     browser.press("[data-verb=arm]")
     told = "arm: carried out, the robot is idle"
     browser.wait(lambda: browser.text("#answer") == told, "a new press counts", SOON_S)
+
+
+def test_a_text_that_a_stalled_connection_held_back_arms_nothing(page: Page) -> None:
+    """A text arms a limp robot by itself, so it must not arrive when nobody expects it any more."""
+    browser = page.browser
+    page.rest()
+    browser.press("[data-verb=park]")
+    page.until("limp")
+    browser.js("document.querySelector('#hold').checked = false; document.querySelector('#loop').checked = true")
+    browser.js(HOLD_BACK.replace("LINE", "cmd"))
+    since = browser.js("mmmd.passed.length")
+    page.say("wave with your right hand")
+    browser.wait(lambda: browser.js("held.length === 1"), "the text", SOON_S)
+    browser.wait(lambda: browser.js(HELD_FOR_S) > OLDEST_STATE_S, "a frame held back for longer than the limit", SOON_S)
+    browser.js("letGo()")
+    browser.wait(lambda: "'wave with your right hand': the newest" in browser.text("#answer"), "the refusal", SOON_S)
+    assert "s old when it arrived; not carried out: look at the robot" in browser.text("#answer")
+    with page.daemon.client() as client:
+        assert (client.status().state, client.status().waiting) == ("limp", [])
+    assert browser.js(f"mmmd.passed.slice({since})") == []
+    page.say("wave with your right hand")
+    page.until("moving")
+    old = "{ ...mmmd.state, t_mono: mmmd.state.t_mono - 60 }"
+    browser.js(SAY_ON.replace("STATE", old).replace("TEXT", "stop moving"))
+    page.until("holding")
+
+
+def test_a_page_without_a_state_sets_nothing_going(page: Page) -> None:
+    browser = page.browser
+    page.rest()
+    since = browser.js("mmmd.passed.length")
+    gesture = "mmmd.state = null; document.querySelector('#gestures button').click()"
+    assert "gesture: not sent" in browser.js(f"{gesture}; document.querySelector('#answer').textContent")
+    say = SAY_ON.replace("STATE", "null")
+    browser.js(say.replace("TEXT", "wave with your right hand"))
+    browser.wait(lambda: "is from before this daemon's start" in browser.text("#answer"), "the refusal", SOON_S)
+    browser.js(say.replace("TEXT", "please stop"))
+    browser.wait(lambda: "means to stop" in browser.text("#answer"), "a stop all the same", SOON_S)
+    page.until("holding")
+    assert set(browser.js(f"mmmd.passed.slice({since})")) <= {"idle", "holding"}
 
 
 def test_a_page_without_a_new_state_cannot_arm_by_either_way(page: Page) -> None:

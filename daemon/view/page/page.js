@@ -58,7 +58,9 @@ if (!document.hidden) await new Promise((painted) => { requestAnimationFrame(() 
 try { scene = new Scene($("scene")); } catch (error) { $("legend").textContent = `No 3D view: ${error.message}. All else works.`; }
 view.scene = scene;
 
-// ---- requests
+// ---- requests: what sets motion going names the state that was on the screen. Held up on its way for 3 s, it is refused by the daemon.
+const unseen = (name) => answer(`${name}: not sent; the robot's state has not been seen yet: wait until the page shows it`, "bad");
+const MOVES = ["say", "gesture", "look", "idle"];
 const cmd = new Line("cmd", heardCmd, (open) => { if (open) cmd.send({ type: "capabilities", id: newId() }); });
 let lastId = "";
 function options() {
@@ -69,10 +71,12 @@ function options() {
   return o;
 }
 function ask(request) {
-  const id = newId();
+  const id = newId(), moves = MOVES.includes(request.type) && request.on !== false;
   view.asked = null; // the answer that is shown belongs to the last press
+  if (moves && !view.state && request.type !== "say") return unseen(request.type);
   if (["say", "gesture"].includes(request.type)) lastId = id;
-  if (!cmd.send({ id, ...request })) answer("no connection to the server", "bad");
+  const shown = moves ? { state_t_mono: view.state?.t_mono ?? 0 } : {}; // 0 is before any daemon: only a text that means stop counts then
+  if (!cmd.send({ id, ...shown, ...request })) answer("no connection to the server", "bad");
 }
 function answer(text, kind = "") { $("answer").textContent = text; $("answer").className = kind; $("answer").scrollTop = 0; }
 function heardCmd(event) {
@@ -110,7 +114,7 @@ const PATIENCE_MS = 3000;
 $("verbs").addEventListener("click", (e) => {
   const verb = e.target.dataset?.verb, name = e.target.textContent;
   if (!verb) return;
-  if (!view.state) return answer(`${name}: not sent; the robot's state has not been seen yet: wait until the page shows it`, "bad");
+  if (!view.state) return unseen(name);
   const request = { ...stamp(), type: verb, id: newId(), state_t_mono: view.state.t_mono, ...(verb === "torque" ? { on: false } : {}) };
   const asked = view.asked = { id: request.id, verb, name, ackS: null, from: "" };
   const silent = () => { if (view.asked === asked && asked.ackS === null) answer(`${name}: NO ANSWER; not carried out if it arrives later than 3 s after the press. Look at the robot's state before you press again`, "bad"); };
@@ -260,7 +264,7 @@ function plots() {
     plot($("plot-effort"), { title: unit === "mA" ? "current" : "load", unit, rows, series: [{ name: hot === null ? "" : `${hot} °C`, colour: "#b35c00", of: (r) => r.effort[servo] }], end });
   }
 }
-Object.assign(view, { heard: heardPub, paint, plots, ctl }); // a test plays an hour of messages in a minute
+Object.assign(view, { heard: heardPub, paint, plots, cmd, ctl }); // a test plays an hour of messages in a minute
 setInterval(paint, 33);
 setInterval(() => { if (view.state) queue(view.state); plots(); }, 200);
 setInterval(() => {
