@@ -55,14 +55,12 @@ class Rooms:
 
     Attributes:
         point: (R,) index of a control point, in rising order.
-        share: (R, 2) weights of the previous control point and of this one in the pose: 1/2 and 1/2 in a frame.
-        grows: (R, n) derivative of the room by each joint, metres per radian.
+        grows: (R, 2, n) derivative of the room by each joint of the previous control point and of this one, metres per radian.
         room_m: (R,) metres of room.
         stiffness: weight of half the squared metres of missing room.
     """
 
     point: Indices
-    share: Array
     grows: Array
     room_m: Array
     stiffness: float
@@ -177,7 +175,7 @@ class _Solver:
         M = int(place.max(initial=-1)) + 1
         place += rooms.point * M
         grows, room_m = np.zeros((N * M, 2, n)), np.ones(N * M)
-        grows[place], room_m[place] = rooms.share[:, :, None] * rooms.grows[:, None], rooms.room_m
+        grows[place], room_m[place] = rooms.grows, rooms.room_m
         self._grows = grows.reshape(N, M, 2 * n)
         self._grows_turned = self._grows.transpose(0, 2, 1)
         self._bound = np.concatenate([*(side.ravel() for side in boxes), room_m])

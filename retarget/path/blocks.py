@@ -191,12 +191,14 @@ class BlockPlanner:
             return hit
 
         n_needed = keep if keep < n_frames else len(start) - 2
-        paths = self._refiner.free_paths(start, task.shown, n_frames, period, touching, least, n_needed)
+        brakes_after = () if task.settle else (n_frames,) if keep == n_frames else (keep, n_frames)
+        paths = self._refiner.free_paths(start, task.shown, n_frames, period, touching, least, n_needed, brakes_after)
         found = best_of(paths, -np.inf if is_free else _ENOUGH)
         if found is None:
             return None
         control, worse = found
-        inside = kept(control[2:], control[1], (control[1] - control[0]) / period, self._limits, period)
+        of_path = control if task.settle else control[: n_frames + 2]  # what follows brakes as hard as the limits allow
+        inside = kept(of_path[2:], control[1], (control[1] - control[0]) / period, self._limits, period)
         return (cut(control), worse) if inside[self._arms].all() else None
 
     def _braking_frames(self, period: float) -> int:

@@ -8,6 +8,7 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
+from retarget.path.bounded_poses import braking_points
 from retarget.path.limit_path import SETTLED_RAD, Objective, limit_path
 from retarget.path.limits import JointLimits, brake, limit_step, stopping_velocity_rad_s
 
@@ -34,11 +35,7 @@ def held(control: Array, period: float, n: int, limits: JointLimits) -> Array:
 
 def braking(control: Array, period: float, limits: JointLimits) -> Array:
     """(n, J) control points after `control` when every joint stops as fast as its acceleration allows."""
-    step = control[-1] - control[-2]
-    loss = limits.acceleration_rad_s2 * period**2
-    n = int(np.ceil((np.abs(step) / loss).max()))
-    left = np.maximum(np.abs(step) - np.arange(1, n + 1)[:, None] * loss, 0.0)
-    return control[-1] + np.cumsum(np.sign(step) * left, 0)
+    return braking_points(control, limits.acceleration_rad_s2 * period**2)
 
 
 def joined(

@@ -7,18 +7,18 @@ Nocedal, Wright 2006, section 18.5).
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
 from retarget.path.arm_program import ArmProgram, Frames, Rooms, Steady
+from retarget.path.bounded_poses import BoundedPoses
 from retarget.path.collision import KEPT, SelfContact
 from retarget.path.least_distances import LeastDistances
 from retarget.path.limits import JointLimits
 from retarget.path.slopes import NearPairs
 from retarget.path.spline_distances import Seen
-from retarget.path.spline_places import SplinePlaces, on_spline
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
@@ -29,8 +29,6 @@ _TRUST_RAD = (0.4, 0.2, 0.2, 0.2, *[0.1] * 8)
 """Radians by which a control point may move, by round."""
 _NEAR_M = 0.03
 """Metres beyond its margin within which a pair is part of the program, in a frame; between frames a third of it."""
-_MOST_PAIRS = 8
-"""Number of nearest pairs of each pose that are part of the program."""
 _AIM_M = 0.001
 """Metres beyond the margin that poses keep, a reserve for the error of the linearisation."""
 _LEAST_GAIN = 5e-3
@@ -39,6 +37,10 @@ _MORE_M = 0.0015
 """Additional metres that poses keep where the path of the previous round touched."""
 _BETWEEN_M = (1 - KEPT) * 0.010
 """Metres of the margin that poses between frames may lack."""
+_STUCK_M, _STUCK_SHARE = 0.1, 0.8
+"""Metres of room that all poses lack together, and the share of such metres left by a round, above which two rounds in a row end
+the program. Arms are then deep in the body, and the program leads them out only from poses pushed out. On 16 recordings and seven
+robots one of two rounds left less wherever a program succeeded, but for a path that was no good."""
 _STIFFNESS = 4e4
 """Weight of the squared metres by which a pair is too near: a millimetre costs as much as 11 degrees in one frame."""
 _STEADY = Steady(1e-3, 1e-2)
@@ -72,6 +74,7 @@ class Refiner:
         touching: Touching,
         least: LeastDistances,
         n_needed: int,
+        brakes_after: Sequence[int],
     ) -> Iterator[tuple[Array, float]]:
         """Yields control points without contact, and the mean increase of a frame's cost by them, after each round that has them.
 
@@ -84,44 +87,52 @@ class Refiner:
             touching: gives the touching ones of N - 2 segments, for control points and bounds of distances in their frames.
             least: bounds of distances in frames near those of `control_rad`.
             n_needed: first segments that have to be free; after the last round contacts in later ones count no more.
+            brakes_after: numbers of segments after which the path must be able to brake, see `BoundedPoses.of`.
         """
         control, joints, N = control_rad.copy(), self._joints, len(control_rad) - 2
         program = self._program(control, period_s)
-        more_m, worse, places = np.full(N, _AIM_M), 0.0, SplinePlaces.of(N)
+        loss_rad = self._limits.acceleration_rad_s2 * period_s**2
+        more_m, worse, lacked_m, within = np.full(N, _AIM_M), 0.0, [np.inf], np.zeros(0, np.int64)
         hit: NDArray[np.bool_] = np.zeros(N, bool)
-        near, least = self._near(control, least, places)
+        poses = BoundedPoses.of(control, within, brakes_after, loss_rad)
+        near, least = self._near(poses, least)
         for trust_rad in _TRUST_RAD:
-            costs = self._costs(shown, least.q_rad, n_frames)
-            change = program.change(control[2:, joints], costs, self._rooms(near, more_m, places), _STEADY, trust_rad)
+            costs = self._costs(shown, least.q_rad[:n_frames], N)
+            change = program.change(control[2:, joints], costs, self._rooms(near, more_m, poses), _STEADY, trust_rad)
             if change is None:
                 return
             control[2:, joints] += change
             worse += costs.of(change)
-            near, least = self._near(control, least, places)
-            lacks = near.pose[near.room_m < np.where(near.pose < N, 0.0, -_BETWEEN_M)]
-            hit = np.asarray(np.isin(np.arange(N), places.segment[lacks]), bool)
+            poses = BoundedPoses.of(control, within, brakes_after, loss_rad)
+            control[2 + n_frames :] = _held(poses.control_rad, N + 2)[2 + n_frames :]
+            near, least = self._near(poses, least)
+            lack_m = np.maximum(np.where(near.pose < len(poses.control_rad) - 2, 0.0, -_BETWEEN_M) - near.room_m, 0.0)
+            hit = np.zeros(N, bool)
+            hit[poses.segment[near.pose[lack_m > 0]]] = True
+            lacked_m.append(float(lack_m.sum()))
+            if _is_stuck(lacked_m):
+                return
             if not hit.any():
-                hit = touching(control, least, Seen(control, near))
-                places = places.and_within(np.flatnonzero(hit))
+                hit = touching(control, least, Seen(poses.control_rad, near))
+                within = np.union1d(within, np.flatnonzero(hit))
                 if not hit.any():
                     yield control.copy(), worse / n_frames
             more_m[hit] += _MORE_M
             more_m[:-1][hit[1:] & ~hit[:-1]] += _MORE_M
             more_m[1:][hit[:-1] & ~hit[1:]] += _MORE_M
         if hit.any() and not hit[:n_needed].any():
-            hit = touching(control, least, Seen(control, near))
+            hit = touching(control, least, Seen(poses.control_rad, near))
             if not hit[:n_needed].any():
                 yield control, worse / n_frames
 
-    def _near(self, control: Array, least: LeastDistances, places: SplinePlaces) -> tuple[NearPairs, LeastDistances]:
-        """Near pairs in N frames and in poses between them, and bounds of distances in the frames."""
-        frames = (control[1:-1] + control[2:]) / 2
-        N = len(frames)
-        between = on_spline(control, places.segment[N:], places.u[N:])
-        within_m = np.repeat((_NEAR_M, _NEAR_M / 3), (N, len(between)))
+    def _near(self, poses: BoundedPoses, least: LeastDistances) -> tuple[NearPairs, LeastDistances]:
+        """Near pairs in the poses, and bounds of distances in those at the ends of segments."""
+        N, q_rad = len(poses.control_rad) - 2, poses.q_rad
+        frames = q_rad[:N]
+        within_m = np.repeat((_NEAR_M, _NEAR_M / 3), (N, len(q_rad) - N))
         least_m = least.at(frames)
-        of_between = LeastDistances(frames, least_m, least.sweep_m).part(places.segment[N:]).at(between)
-        near = self._contact.near(np.concatenate([frames, between]), within_m, np.concatenate([least_m, of_between]))
+        of_between = LeastDistances(frames, least_m, least.sweep_m).part(poses.segment[N:]).at(q_rad[N:])
+        near = self._contact.near(q_rad, within_m, np.concatenate([least_m, of_between]))
         return near, LeastDistances(frames, near.least_m[:N], least.sweep_m)
 
     def _program(self, control: Array, period_s: float) -> ArmProgram:
@@ -137,26 +148,27 @@ class Refiner:
         )
         return ArmProgram(upper, lower, control[:2, joints])
 
-    def _costs(self, shown: Shown, frames: Array, n_frames: int) -> Frames:
-        """The costs of N frames; frames after the motion have a small weight on their present angles."""
-        N, joints = len(frames), self._joints
+    def _costs(self, shown: Shown, frames: Array, N: int) -> Frames:
+        """The costs of N frames, the first of which are given; later ones have a small weight on their present angles."""
+        n_frames, joints = len(frames), self._joints
         n = len(joints)
         hessian, fall = np.zeros((N, n, n)), np.zeros((N, n))
-        every, falls = shown(frames[:n_frames])
+        every, falls = shown(frames)
         hessian[:n_frames], fall[:n_frames] = every[:, joints[:, None], joints], falls[:, joints]
         hessian[n_frames:] = _TAIL_WEIGHT * hessian[n_frames - 1]
         hessian[:, range(n), range(n)] += _LEAST
         return Frames(hessian, fall)
 
-    def _rooms(self, near: NearPairs, more_m: Array, places: SplinePlaces) -> Rooms:
-        """Constraint rows of N frames and of poses between them."""
-        every = places.point[near.pose]
-        some = np.flatnonzero((_rank(near.pose, near.room_m) < _MOST_PAIRS) & (every >= 0))
-        some = some[np.argsort(every[some], kind="stable")]
-        point, share = every[some], places.share[near.pose[some]]
+    def _rooms(self, near: NearPairs, more_m: Array, poses: BoundedPoses) -> Rooms:
+        """Constraint rows of the poses."""
+        point = poses.point[near.pose]
+        some = np.flatnonzero((_rank(poses.group[near.pose], near.room_m) < poses.most[near.pose]) & (point >= 0))
+        some = some[np.argsort(point[some], kind="stable")]
+        point, pose = point[some], near.pose[some]
+        share = poses.share[pose][:, :, self._joints]
         share[point == 0, 0] = 0.0  # the point before it is fixed
-        room_m = near.room_m[some] - more_m[places.segment[near.pose[some]]]
-        return Rooms(point, share, near.grows(some)[:, self._joints], room_m, _STIFFNESS)
+        grows = share * near.grows(some)[:, None, self._joints]
+        return Rooms(point, grows, near.room_m[some] - more_m[poses.segment[pose]], _STIFFNESS)
 
 
 def best_of(paths: Iterator[tuple[Array, float]], enough: float) -> tuple[Array, float] | None:
@@ -174,9 +186,22 @@ def best_of(paths: Iterator[tuple[Array, float]], enough: float) -> tuple[Array,
     return best
 
 
-def _rank(pose: Indices, room_m: Array) -> Indices:
-    """(R,) how many rows of the same pose have less room."""
-    order = np.lexsort((room_m, pose))
-    rank = np.empty(len(pose), np.int64)
-    rank[order] = np.arange(len(pose)) - np.searchsorted(pose[order], pose[order])
+def _is_stuck(lacked_m: list[float]) -> bool:
+    """Whether the last two rounds left most of what was lacking before them, of metres over all poses by round."""
+    last = lacked_m[-3:]
+    return (
+        len(last) == 3 and last[2] > _STUCK_M and last[1] > _STUCK_SHARE * last[0] and last[2] > _STUCK_SHARE * last[1]
+    )
+
+
+def _held(control_rad: Array, n: int) -> Array:
+    """(n, J) control points, the last of which is repeated."""
+    return np.concatenate([control_rad, np.repeat(control_rad[-1:], n - len(control_rad), 0)])
+
+
+def _rank(group: Indices, room_m: Array) -> Indices:
+    """(R,) how many rows of the same group have less room."""
+    order = np.lexsort((room_m, group))
+    rank, group = np.empty(len(group), np.int64), group[order]
+    rank[order] = np.arange(len(group)) - np.searchsorted(group, group)
     return rank

@@ -33,15 +33,15 @@ def test_it_finds_what_slsqp_finds(seed: int) -> None:
     root = rng.normal(size=(_N, _JOINTS, _JOINTS))
     costs = Frames(0.3 * root @ root.transpose(0, 2, 1), rng.normal(size=(_N, _JOINTS)))
     bounds = np.broadcast_to(np.array([1.0, 0.3, 0.2])[:, None, None], (3, _N, _JOINTS))
-    share = np.array([[0.5, 0.5], [0.0, 1.0]])
-    rooms = Rooms(np.array([2, 4]), share, rng.normal(size=(2, _JOINTS)), np.array([0.05, -0.02]), 1e3)
+    share, grows = np.array([[0.5, 0.5], [0.0, 1.0]]), rng.normal(size=(2, _JOINTS))
+    rooms = Rooms(np.array([2, 4]), share[..., None] * grows[:, None], np.array([0.05, -0.02]), 1e3)
     program = ArmProgram(bounds, -bounds, np.zeros((2, _JOINTS)))
 
     def cost(points: Array) -> float:
         frames, (_, step, bend) = _frames(points), _differences(points)
         error = np.einsum("ki,kij,kj", frames, costs.hessian, frames) / 2 - (costs.fall * frames).sum()
         poses = np.stack([frames[2], points.reshape(_N, _JOINTS)[4]])
-        lack = np.minimum(rooms.room_m + (rooms.grows * poses).sum(1), 0.0)
+        lack = np.minimum(rooms.room_m + (grows * poses).sum(1), 0.0)
         return float(
             error + _STEADY.step * (step**2).sum() / 2 + _STEADY.bend * (bend**2).sum() / 2 + 1e3 * (lack**2).sum() / 2
         )
@@ -65,7 +65,7 @@ def test_no_change_where_nothing_falls() -> None:
     """At the optimum of frames without distances near, the program stays."""
     costs = Frames(np.tile(np.eye(_JOINTS), (_N, 1, 1)), np.zeros((_N, _JOINTS)))
     bounds = np.ones((3, _N, _JOINTS))
-    none = Rooms(np.zeros(0, np.int64), np.zeros((0, 2)), np.zeros((0, _JOINTS)), np.zeros(0), 1.0)
+    none = Rooms(np.zeros(0, np.int64), np.zeros((0, 2, _JOINTS)), np.zeros(0), 1.0)
     found = ArmProgram(bounds, -bounds, np.zeros((2, _JOINTS))).change(
         np.zeros((_N, _JOINTS)), costs, none, _STEADY, _MOST_RAD
     )

@@ -7,6 +7,7 @@ import pytest
 from gestures import gesture
 from numpy.typing import NDArray
 
+from retarget.path.bounded_poses import BoundedPoses, braking_points
 from retarget.path.refining import Refiner
 from retarget.path.spline_places import SplinePlaces, on_spline
 from retarget.pipeline import Retargeter
@@ -35,12 +36,14 @@ def test_a_row_says_how_a_distance_changes_with_the_control_points() -> None:
     """Rows of poses between frames once belonged to the next control point, so paths were pushed where nothing touched."""
     retargeter = Retargeter(load_robot("reference"), keep_contacts=True)
     contact, joints = retargeter.contact, np.array(sorted({j for arm in retargeter.arms for j in arm.joints}))
-    refiner, places = Refiner(contact, retargeter.limits, joints), SplinePlaces.of(_N).and_within(np.array([0, 3]))
+    refiner, within = Refiner(contact, retargeter.limits, joints), np.array([0, 3])
+    places = SplinePlaces.of(_N).and_within(within)
     rng = np.random.default_rng(0)
     held = retargeter.retarget(gesture("pray")).q_rad[-1]
     control = held + rng.normal(scale=0.005, size=(_N + 2, len(held)))
-    near, _ = refiner._near(control, contact.least((control[1:-1] + control[2:]) / 2), places)
-    rooms = refiner._rooms(near, np.zeros(_N), places)
+    poses = BoundedPoses.of(control, within, (), np.ones(len(held)))
+    near, _ = refiner._near(poses, contact.least((control[1:-1] + control[2:]) / 2))
+    rooms = refiner._rooms(near, np.zeros(_N), poses)
 
     beyond_m = near.found.distance_m - contact._margin_m[near.found.pair]
     is_near = beyond_m < np.where(near.found.pose < _N, 0.03, 0.01)
@@ -58,10 +61,31 @@ def test_a_row_says_how_a_distance_changes_with_the_control_points() -> None:
         step = rng.normal(scale=_MOVED_RAD, size=len(joints))
         moved = control.copy()
         moved[2 + k, joints] += step
-        along = rooms.grows @ step
-        said = (rooms.share[:, 0] * (rooms.point - 1 == k) + rooms.share[:, 1] * (rooms.point == k)) * along
+        by = rooms.grows @ step  # by both control points of each row
+        said, along = by[:, 0] * (rooms.point - 1 == k) + by[:, 1] * (rooms.point == k), by.sum(1)
         apart = np.abs((rooms_m(moved) - rooms_m(control))[order] - said)
         assert (apart <= np.abs(along) / 8 + 1e-3 * _MOVED_RAD).mean() > 0.95
+
+
+@pytest.mark.parametrize("brakes_after", [(_N,), (4, _N)])
+def test_braking_poses_change_with_the_last_two_control_points(brakes_after: tuple[int, ...]) -> None:
+    """The program once learnt of a contact while braking only from the proof, and pushed for ten rounds where it did not help."""
+    rng, loss_rad = np.random.default_rng(1), np.array([0.02, 0.05, 0.1])
+    control, none = np.cumsum(rng.normal(scale=0.1, size=(_N + 4, 3)), 0), np.zeros(0, np.int64)
+    poses = BoundedPoses.of(control, none, brakes_after, loss_rad)
+    end = control[: _N + 2]
+    np.testing.assert_array_equal(poses.control_rad, np.concatenate([end, braking_points(end, loss_rad)]))
+    late = np.flatnonzero(poses.group < 0)
+    assert len(late) > 2
+    for after in brakes_after:
+        last = late[poses.point[late] == after - 1]
+        assert len(last)
+        for k in range(2):
+            step = rng.normal(scale=1e-6, size=3)
+            moved = control.copy()
+            moved[after + k] += step
+            change = BoundedPoses.of(moved, none, brakes_after, loss_rad).q_rad - poses.q_rad
+            np.testing.assert_allclose(change[last], poses.share[last, k] * step, atol=1e-12)
 
 
 @pytest.mark.parametrize(
