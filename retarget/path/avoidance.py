@@ -109,12 +109,17 @@ class Avoidance:
     def _come_near(self, wanted_rad: Array, from_rad: Array, least: LeastDistances) -> Array:
         """Poses (n, J) reached in steps from `from_rad` towards the wanted ones, pushed out of contact after each step."""
         q, free = self._pushed_out(from_rad, _AIM_M, least)
+        going = np.arange(len(q))
         for _ in range(_COME_STEPS):
-            step = np.minimum(np.maximum(wanted_rad - q, -_MOST_PUSHED_RAD), _MOST_PUSHED_RAD)
-            ahead, clear = self._pushed_out(q + step, _AIM_M, least)
-            nearer = clear | ~free
-            q[nearer] = ahead[nearer]
-            free |= clear
+            step = np.minimum(np.maximum(wanted_rad[going] - q[going], -_MOST_PUSHED_RAD), _MOST_PUSHED_RAD)
+            ahead, clear = self._pushed_out(q[going] + step, _AIM_M, least.part(going))
+            # A clear pose whose step ends in a contact stays, and so would each further step.
+            nearer = clear | ~free[going]
+            going = going[nearer]
+            q[going] = ahead[nearer]
+            free[going] |= clear[nearer]
+            if not len(going):
+                break
         return q
 
     def _pushed_out(

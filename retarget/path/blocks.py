@@ -107,9 +107,11 @@ class BlockPlanner:
         least = least.part(slice(1, None))
         touching = self._contact.touching(least)
         found: list[Array] = []
+        pushed = None
         if touching.any() and task.shown:
             # The refined path replaces the limiter's, so contacts on the limiter's are not searched.
-            path = self._path(task, self._avoidance.push_a_little(posed, touching, least))
+            pushed = self._avoidance.push_a_little(posed, touching, least)
+            path = self._path(task, pushed)
             better = self._refined(task, path, least)
             if better is not None:
                 found.append(better[0])
@@ -117,7 +119,8 @@ class BlockPlanner:
                     return better[0], stretches(touching)
         eased, interventions = self._avoidance.push_out(posed, begin.position_rad, least)
         path, hit, least = self._limited(task, eased, least)
-        if interventions or hit.any():
+        # From the same poses the program finds the same path once more.
+        if (interventions or hit.any()) and (pushed is None or np.any(eased != pushed)):
             better = self._refined(task, path, least, is_free=not hit.any())
             if better is not None:
                 found.append(better[0])

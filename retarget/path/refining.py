@@ -37,10 +37,11 @@ _MORE_M = 0.0015
 """Additional metres that poses keep where the path of the previous round touched."""
 _BETWEEN_M = (1 - KEPT) * 0.010
 """Metres of the margin that poses between frames may lack."""
+_DEEP_M, _DEEP_WORSE = 0.5, 0.05
 _STUCK_M, _STUCK_SHARE = 0.1, 0.8
-"""Metres of room that all poses lack together, and the share of such metres left by a round, above which two rounds in a row end
-the program. Arms are then deep in the body, and the program leads them out only from poses pushed out. On 16 recordings and seven
-robots one of two rounds left less wherever a program succeeded, but for a path that was no good."""
+"""Metres of room that all poses lack together and increase of a frame's cost above which the program ends; less metres, and the
+share of them that each of two rounds in a row left, above which it ends as well. Arms are then deep in the body, and the program leads
+them out only from poses pushed out. On 16 recordings and seven robots no program that went on led to a path that was taken."""
 _STIFFNESS = 4e4
 """Weight of the squared metres by which a pair is too near: a millimetre costs as much as 11 degrees in one frame."""
 _STEADY = Steady(1e-3, 1e-2)
@@ -110,7 +111,7 @@ class Refiner:
             hit = np.zeros(N, bool)
             hit[poses.segment[near.pose[lack_m > 0]]] = True
             lacked_m.append(float(lack_m.sum()))
-            if _is_stuck(lacked_m):
+            if _is_hopeless(lacked_m, worse / n_frames):
                 return
             if not hit.any():
                 hit = touching(control, least, Seen(poses.control_rad, near))
@@ -186,12 +187,14 @@ def best_of(paths: Iterator[tuple[Array, float]], enough: float) -> tuple[Array,
     return best
 
 
-def _is_stuck(lacked_m: list[float]) -> bool:
-    """Whether the last two rounds left most of what was lacking before them, of metres over all poses by round."""
-    last = lacked_m[-3:]
-    return (
-        len(last) == 3 and last[2] > _STUCK_M and last[1] > _STUCK_SHARE * last[0] and last[2] > _STUCK_SHARE * last[1]
-    )
+def _is_hopeless(lacked_m: list[float], worse: float) -> bool:
+    """Whether arms stay deep in the body, by the metres of room that all poses lacked before and after each round.
+
+    Either much is lacking although the path has become worse, or two rounds in a row left most of what was lacking before them.
+    """
+    *_, before_m, between_m, now_m = np.inf, *lacked_m
+    is_stuck = now_m > _STUCK_M and between_m > _STUCK_SHARE * before_m and now_m > _STUCK_SHARE * between_m
+    return is_stuck or (now_m > _DEEP_M and worse > _DEEP_WORSE)
 
 
 def _held(control_rad: Array, n: int) -> Array:
