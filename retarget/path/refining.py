@@ -40,8 +40,8 @@ _BETWEEN_M = (1 - KEPT) * 0.010
 _DEEP_M, _DEEP_WORSE = 0.5, 0.05
 _STUCK_M, _STUCK_SHARE = 0.1, 0.8
 """Metres of room that all poses lack together and increase of a frame's cost above which the program ends; less metres, and the
-share of them that each of two rounds in a row left, above which it ends as well. Arms are then deep in the body, and the program leads
-them out only from poses pushed out. On 16 recordings and seven robots no program that went on led to a path that was taken."""
+share of them that each of two rounds in a row left, above which it ends as well. Arms are then deep in the body, and the program
+leads them out only from poses pushed out. On 16 recordings and seven robots none that went on led to a path that was taken."""
 _STIFFNESS = 4e4
 """Weight of the squared metres by which a pair is too near: a millimetre costs as much as 11 degrees in one frame."""
 _STEADY = Steady(1e-3, 1e-2)
