@@ -31,8 +31,12 @@ class ArmKinematics:
         self.axes = np.stack([c.axes for c in chains])  # (G, n, 3)
         self._skews = np.array([[skew(a) for a in c.axes] for c in chains])  # (G, n, 3, 3)
         self._skews_squared = self._skews @ self._skews
+        # Turning by an angle adds to a vector its cross product with the axis times the sine, and the product of that times 1 - cosine.
+        self._turns = np.concatenate([self._skews, self._skews_squared], -2)  # (G, n, 6, 3)
         self._upper_m, self._beside_m = np.stack([c.upper_m for c in chains]), np.stack([c.beside_m for c in chains])
         self.upper0, self.fore0 = unit(self._upper_m), unit(np.stack([c.fore_m for c in chains]))
+        bones = np.stack([self.fore0, self.upper0 if one.has_elbow else self.fore0], 1)
+        self._zero = np.concatenate([bones, self.axes[:, ::-1]], 1).swapaxes(1, 2)  # (G, 3, n + 2)
 
     def directions(self, q: Array) -> tuple[Array, Array]:
         """Unit directions of upper arm and forearm, each (G, M, 3), for angles (G, M, n)."""
@@ -50,22 +54,34 @@ class ArmKinematics:
 
     def bones(self, q: Array) -> Bones:
         """Directions of both bones for angles (G, M, n), with their derivatives."""
-        R = self._rotations(q)
-        turned = above = R[:, :, 0]
-        axes = np.empty((*q.shape, 3))
-        axes[:, :, 0] = self.axes[:, None, 0]
-        for j in range(1, self.n_joints):
-            axes[:, :, j] = (turned @ self.axes[:, None, j, :, None])[..., 0]
-            turned, above = turned @ R[:, :, j], turned
-        fore = (turned @ self.fore0[:, None, :, None])[..., 0]
-        upper = (above @ self.upper0[:, None, :, None])[..., 0] if self._has_elbow else fore
-        both = np.stack([upper, fore], 2)[:, :, None]
-        slope = cross(axes[:, :, :, None], both).reshape(*q.shape, 6)
-        if self._has_offsets:
-            upper, slope[:, :, : self._n_shoulder, :3] = self._upper_with_offsets(R, axes)
+        G, M, n = q.shape
+        # Poses along the last axis in memory: arrays of three numbers would cost NumPy more than their arithmetic.
+        by_joint = np.ascontiguousarray(q.transpose(2, 0, 1))[:, :, None, None]
+        sine, versine = np.sin(by_joint), 1 - np.cos(by_joint)
+        every = np.empty(
+            (G, 5, n + 2, M)
+        )  # coordinates x, y, z, x, y of forearm, upper arm, axes from the last to the first
+        every[:, :3] = self._zero[..., None]
+        for j in range(n - 1, -1, -1):
+            turned = every[:, :3, : 1 if j >= self._n_shoulder else n + 1 - j]  # what joint j turns
+            steps = (self._turns[:, j] @ turned.reshape(G, 3, -1)).reshape(G, 6, -1, M)
+            turned += sine[j] * steps[:, :3] + versine[j] * steps[:, 3:]
+        every[:, 3:] = every[:, :2]
+        axes, both = (
+            every[:, :, :1:-1].transpose(0, 2, 1, 3)[:, :, None],
+            every[:, :, 1::-1].transpose(0, 2, 1, 3)[:, None],
+        )
+        slope = axes[:, :, :, 1:4] * both[:, :, :, 2:]
+        slope -= axes[:, :, :, 2:] * both[:, :, :, 1:4]  # (G, n, 2, 3, M): cross products of axes and bones
         if self._has_elbow:
-            slope[:, :, -1, :3] = 0.0
-        return Bones(upper, fore, slope)
+            slope[:, -1, 0] = 0.0
+        slopes = slope.reshape(G, n, 6, M).transpose(0, 3, 1, 2)
+        upper, fore = every[:, :3, 1].swapaxes(1, 2), every[:, :3, 0].swapaxes(1, 2)
+        if self._has_offsets:
+            upper, slopes[:, :, : self._n_shoulder, :3] = self._upper_with_offsets(
+                self._rotations(q), every[:, :3, :1:-1].transpose(0, 3, 2, 1)
+            )
+        return Bones(upper, fore, slopes)
 
     def _rotations(self, q: Array) -> Array:
         """(G, M, n, 3, 3) rotations of the joints."""

@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 
 from retarget.human.arm_chain import ArmChain
 from retarget.human.arm_kinematics import ArmKinematics
-from retarget.human.bones import weighted
+from retarget.human.bones import poses_last, weighted
 from retarget.human.branches import UNSEEN, fill_unseen
 from retarget.human.subproblems import Reach, Turn, angle_about, frame, unit
 from retarget.robot.kinematics import cross, skew
@@ -191,20 +191,23 @@ class Arms(ArmKinematics):
         aim = weighted(np.concatenate([upper, fore], -1), weights)
         likeness = aim @ np.swapaxes(self._pose_directions, -1, -2) - weights[..., :1, 1] * self._pose_cosines[:, None]
         nearest = likeness.argmax(-1)  # (G, M)
-        starts = [np.take_along_axis(self._poses, nearest[..., None], 1)]
+        grid = np.take_along_axis(self._poses, nearest[..., None], 1)
         between = unit(upper + fore)
-        for aim in (upper, between) if self._has_elbow else (between,):
-            if self._n_shoulder == 2:
-                a1, a2 = self.axes[:, 0], self.axes[:, 1]
-                turn = Turn(a2, self.upper0)
-                q2 = Reach(turn, a1).angles(np.einsum("gmi,gi->gm", aim, a1))  # (G, M, 2)
-                q1, _ = angle_about(a1, turn.at(np.cos(q2), np.sin(q2)), aim)
-                shoulders = [np.stack([q1[..., w], q2[..., w]], -1) for w in range(2)]
-            else:
-                q1, _ = angle_about(self.axes[:, 0], self.upper0[:, None, None], aim)
-                shoulders = [q1]
-            starts += [self._with_elbow(shoulder, fore) for shoulder in shoulders]
-        return np.stack(starts, 2)
+        aims = np.concatenate([upper, between], 1) if self._has_elbow else between  # (G, A M, 3)
+        if self._n_shoulder == 2:
+            a1, a2 = self.axes[:, 0], self.axes[:, 1]
+            turn = Turn(a2, self.upper0)
+            q2 = Reach(turn, a1).angles(np.einsum("gmi,gi->gm", aims, a1))  # (G, A M, 2)
+            q1, _ = angle_about(a1, turn.at(np.cos(q2), np.sin(q2)), aims)
+            shoulders = np.stack([q1, q2], -1)  # (G, A M, W, 2)
+        else:
+            q1, _ = angle_about(self.axes[:, 0], self.upper0[:, None, None], aims)
+            shoulders = q1[..., None]
+        G, M = nearest.shape
+        A, W = aims.shape[1] // M, shoulders.shape[2]
+        starts = shoulders.reshape(G, A, M, W, -1).transpose(0, 2, 1, 3, 4).reshape(G, M * A * W, -1)
+        starts = self._with_elbow(starts, np.repeat(fore, A * W, 1)).reshape(G, M, A * W, -1)
+        return np.concatenate([grid[:, :, None], starts], 2)
 
     def _with_elbow(self, shoulder: Array, fore: Array) -> Array:
         """(G, M, n) shoulder angles with the elbow that brings the forearm nearest to `fore`."""
@@ -220,20 +223,19 @@ class Arms(ArmKinematics):
     def _refine(self, solutions: Array, upper: Array, fore: Array, steps: int, weights: Array | None = None) -> Array:
         """Gauss-Newton steps on both direction errors from angles (G, M, C, n), clipped to the limits."""
         G, M, C, n = solutions.shape
-        q = self._nearest_turn(solutions).reshape(G, M * C, n)
+        q = poses_last(self._nearest_turn(solutions).reshape(G, M * C, n))
         q = np.minimum(np.maximum(q, self.low), self.high)
-        upper, fore = np.repeat(upper, C, 1), np.repeat(fore, C, 1)
-        of = None if weights is None else np.repeat(weights, C, 1)
+        upper, fore = (poses_last(np.repeat(d, C, 1)) for d in (upper, fore))
+        of = None if weights is None else poses_last(np.repeat(weights, C, 1))
         damping = _DAMPING * np.eye(n)
         for _ in range(steps):
             b = self.bones(q)
-            fall, slope = b.towards(upper, fore, of), b.slope
+            fall = b.towards(upper, fore, of)
             # A joint at its limit that a step would push further out stays fixed; the other joints compensate.
             stuck = ((q <= self.low) & (fall < 0)) | ((q >= self.high) & (fall > 0))
-            slope = np.where(stuck[..., None], 0.0, slope)
-            both = slope if of is None else weighted(slope, of[:, :, None])
-            normal = both @ np.swapaxes(slope, -1, -2) + damping
-            step = np.linalg.solve(normal, np.where(stuck, 0.0, fall)[..., None])[..., 0]
+            free = 1.0 - stuck
+            normal = b.hessian(of) * (free[..., None] * free[..., None, :]) + damping
+            step = np.linalg.solve(normal, (free * fall)[..., None])[..., 0]
             q = q + np.minimum(np.maximum(step, -_LARGEST_STEP_RAD), _LARGEST_STEP_RAD)
             q = np.minimum(np.maximum(q, self.low), self.high)
             if step.size and np.abs(step).max() < _DONE_RAD:

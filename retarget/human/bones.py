@@ -17,7 +17,7 @@ class Bones:
     Attributes:
         upper: (G, M, 3) unit directions of upper arms.
         fore: (G, M, 3) unit directions of forearms.
-        slope: (G, M, n, 6) derivatives of both directions by each joint, per radian.
+        slope: (G, M, n, 6) derivatives of both directions by each joint, per radian; in memory as of `poses_last`.
     """
 
     upper: Array
@@ -26,18 +26,25 @@ class Bones:
 
     def hessian(self, weights: Array | None = None) -> Array:
         """(G, M, n, n) Gauss-Newton Hessian of half the squared error of both directions, with `weights` (G, M, 2, 2)."""
-        slope = self.slope if weights is None else weighted(self.slope, weights[:, :, None])
-        return slope @ np.swapaxes(self.slope, -1, -2)
+        slope = self.slope if weights is None else weighted(self.slope, poses_last(weights)[:, :, None])
+        return np.einsum("gmia,gmja->gmij", slope, self.slope)
 
     def towards(self, upper: Array, fore: Array, weights: Array | None = None) -> Array:
         """(G, M, n) negative gradient, by the joints, of half the squared error against directions (G, M, 3)."""
         error = np.concatenate([upper - self.upper, fore - self.fore], -1)
         if weights is not None:
             error = weighted(error, weights)
-        return (self.slope @ error[..., None])[..., 0]
+        return np.einsum("gmia,gma->gmi", self.slope, error)
 
 
 def weighted(errors: Array, weights: Array) -> Array:
     """(..., 6) errors of both directions, multiplied by symmetric weights (..., 2, 2) of the bones."""
     apart = errors.reshape(*errors.shape[:-1], 2, 3)
-    return (weights @ apart).reshape(errors.shape)
+    own, across = np.diagonal(weights, axis1=-2, axis2=-1)[..., None], weights[..., :1, 1:]
+    return (own * apart + across * apart[..., ::-1, :]).reshape(errors.shape)
+
+
+def poses_last(values: Array) -> Array:
+    """(G, M, ...) values with the M poses along the last axis in memory: NumPy is slow on many rows of three numbers."""
+    n = values.ndim
+    return np.ascontiguousarray(values.transpose(0, *range(2, n), 1)).transpose(0, n - 1, *range(1, n - 1))

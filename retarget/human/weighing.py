@@ -71,16 +71,21 @@ def bone_weights(human: HumanPose) -> Array:
 
 def swinging(human: HumanPose) -> Array:
     """(2, T) degree, 0 to 1, to which each forearm swings about a still upper arm."""
-    upper, fore = (_speed_rad_s(d, human.fps) for d in (human.upper, human.fore))
+    upper, fore = np.split(_speed_rad_s(np.concatenate([human.upper, human.fore]), human.fps), 2)
     return smooth_step(fore, *_SWING_RAD_S) * smooth_step(upper / np.maximum(fore, 1e-6), *_STILL_SHARE)
 
 
 def _speed_rad_s(directions: Array, fps: float) -> Array:
-    """(2, T) root mean square speed of unit directions (2, T, 3) around each frame."""
+    """(K, T) root mean square speed of K unit directions (K, T, 3) around each frame."""
     if directions.shape[1] < 2:
         return np.zeros(directions.shape[:2])
-    step = np.gradient(directions, axis=1) * fps
+    step = np.empty_like(directions)
+    step[:, 1:-1] = (directions[:, 2:] - directions[:, :-2]) / 2
+    step[:, 0], step[:, -1] = directions[:, 1] - directions[:, 0], directions[:, -1] - directions[:, -2]
+    squares = ((step * fps) ** 2).sum(-1)
     reach = max(1, round(3 * _SWING_S * fps))
     share = np.exp(-0.5 * (np.arange(-reach, reach + 1) / (_SWING_S * fps)) ** 2)
-    squares = np.pad((step**2).sum(-1), ((0, 0), (reach, reach)), mode="edge")
-    return np.sqrt(np.stack([np.convolve(s, share / share.sum(), "valid") for s in squares]))
+    share /= share.sum()
+    first, last = np.repeat(squares[:, :1], reach, 1), np.repeat(squares[:, -1:], reach, 1)
+    around = np.concatenate([first, squares, last], 1)
+    return np.sqrt(np.stack([np.convolve(s, share, "valid") for s in around]))
