@@ -53,37 +53,43 @@ class BoundedPoses:
                 it does brake, whatever control points follow there; without any it follows all of them.
             loss_rad: (J,) change of a step, radians, by which braking slows down.
         """
-        stops = [control_rad[: n + 2] for n in brakes_after]
-        ways = [np.concatenate([stop[-2:], braking_points(stop, loss_rad)]) for stop in stops]
-        if stops:
-            control_rad = np.concatenate([stops[-1], ways[-1][2:]])
+        ends = [control_rad[n : n + 2] for n in brakes_after]
+        ways = [np.concatenate([end, braking_points(end, loss_rad)]) for end in ends]
+        if ways:
+            control_rad = np.concatenate([control_rad[: brakes_after[-1]], ways[-1]])
         N = len(control_rad) - 2
         places = SplinePlaces.of(N).and_within(within[within < N])
-        J = control_rad.shape[1]
-        q_rad = [on_spline(control_rad, places.segment, places.u)]
-        # The pose at the end of a segment, computed as the proof of a path computes it.
-        q_rad[0][:N] = (control_rad[1:-1] + control_rad[2:]) / 2
-        segment, point = [places.segment], [places.point]
-        share = [np.repeat(places.share[:, :, None], J, 2)]
-        group, most = [np.arange(len(places.u))], [np.full(len(places.u), _MOST_PAIRS)]
-        for way, n in zip(ways, brakes_after, strict=True):
-            moved = _moved(way, loss_rad)
-            if n == brakes_after[-1]:
-                late = np.flatnonzero(places.segment >= n)
-                along = on_spline(moved, places.segment[late] - n, places.u[late])
-                point[0] = np.minimum(point[0], n - 1)
-                share[0][late, 0], share[0][late, 1] = -along, 1 + along
-                group[0][late], most[0][late] = -1, _MOST_BRAKING
-            else:
-                of = SplinePlaces.of(len(way) - 2)
-                along = on_spline(moved, of.segment, of.u)
-                q_rad.append(on_spline(way, of.segment, of.u))
-                segment.append(np.full(len(of.u), n - 1))
-                point.append(segment[-1])
-                share.append(np.stack([-along, 1 + along], 1))
-                group.append(np.full(len(of.u), -2))
-                most.append(np.full(len(of.u), _MOST_BRAKING))
-        return cls(control_rad, *(np.concatenate(x) for x in (q_rad, segment, point, share, group, most)))
+        segment, point, M = places.segment, places.point, len(places.u)
+        q_rad = on_spline(control_rad, segment, places.u)
+        # The poses at the ends of segments, computed as the proof of a path computes them.
+        q_rad[:N] = (control_rad[1:-1] + control_rad[2:]) / 2
+        share = np.empty((M, 2, control_rad.shape[1]))
+        share[:] = places.share[:, :, None]
+        group, most = np.arange(M, dtype=np.int64), np.full(M, _MOST_PAIRS)
+        if ways:
+            n = brakes_after[-1]
+            late = np.flatnonzero(segment >= n)
+            share[late] = _shares(ways[-1], loss_rad, segment[late] - n, places.u[late])
+            point, group[late], most[late] = np.minimum(point, n - 1), -1, _MOST_BRAKING
+        path = cls(control_rad, q_rad, segment, point, share, group, most)
+        return path.and_also([cls._braking(*at, loss_rad) for at in zip(brakes_after[:-1], ways[:-1], strict=True)])
+
+    @classmethod
+    def _braking(cls, n: int, way_rad: Array, loss_rad: Array) -> BoundedPoses:
+        """The poses on the way (K, J) from the last two of n + 2 control points to rest."""
+        places = SplinePlaces.of(len(way_rad) - 2)
+        M = len(places.u)
+        share = _shares(way_rad, loss_rad, places.segment, places.u)
+        last, group, most = np.full(M, n - 1), np.full(M, -2), np.full(M, _MOST_BRAKING)
+        return cls(way_rad, on_spline(way_rad, places.segment, places.u), last, last, share, group, most)
+
+    def and_also(self, more: Sequence[BoundedPoses]) -> BoundedPoses:
+        """These poses of a path, then more poses."""
+        if not more:
+            return self
+        every = (self, *more)
+        names = ("q_rad", "segment", "point", "share", "group", "most")
+        return BoundedPoses(self.control_rad, *(np.concatenate([getattr(x, name) for x in every]) for name in names))
 
 
 def braking_points(control_rad: Array, loss_rad: Array) -> Array:
@@ -94,12 +100,14 @@ def braking_points(control_rad: Array, loss_rad: Array) -> Array:
     return control_rad[-1] + np.cumsum(np.sign(step) * left, 0)
 
 
-def _moved(way_rad: Array, loss_rad: Array) -> Array:
-    """(n, J) how many times the step between the first two control points each of n points lies beyond the second.
+def _shares(way_rad: Array, loss_rad: Array, segment: Indices, u: Array) -> Array:
+    """(K, 2, J) derivatives of poses on a braking path (n, J) by its first two control points.
 
-    Points after the second lie less far by an amount that the step does not change.
+    A point of the path lies some times their step beyond the second, less an amount that the step does not change.
     """
     step = np.abs(way_rad[1] - way_rad[0])
-    moves = step > loss_rad * np.arange(1, len(way_rad) - 1)[:, None]
-    none = np.zeros((1, len(step)))
-    return np.concatenate([none - 1, none, np.cumsum(moves, 0)])
+    times = np.zeros_like(way_rad)
+    times[0] = -1.0
+    np.cumsum(step > loss_rad * np.arange(1, len(way_rad) - 1)[:, None], 0, out=times[2:])
+    along = on_spline(times, segment, u)
+    return np.stack([-along, 1 + along], 1)

@@ -12,7 +12,7 @@ _STEEP = 1e9
 
 
 def capsule_to_box(offset: Array, axis: Array, half_m: Array, box_half_m: Array) -> tuple[Array, Array, Array]:
-    """Distances (n,) from boxes to capsules' axes, vectors (n, 3) from box to axis, and places (n,) of the nearest points.
+    """Distances (n,) from boxes to capsules' axes, vectors (3, n) from box to axis, and places (n,) of the nearest points.
 
     Distance and vector are 0 where an axis crosses its box. The places are metres along the axes from the capsules' centres.
 
@@ -20,25 +20,26 @@ def capsule_to_box(offset: Array, axis: Array, half_m: Array, box_half_m: Array)
     nearest point is the zero of the slope between the last plane with a negative and the first with a positive slope.
 
     Args:
-        offset: (n, 3) centre of the capsule in the box's own axes.
-        axis: (n, 3) unit axis of the capsule there.
+        offset: (3, n) centre of the capsule in the box's own axes.
+        axis: (3, n) unit axis of the capsule there.
         half_m: (n,) its half length; 0 for a sphere.
-        box_half_m: (n, 3) half edges of the box.
+        box_half_m: (3, n) half edges of the box.
     """
-    o, a, h = offset.T, axis.T, box_half_m.T  # (3, n): the longest axis last
-    along = np.where(np.abs(a) < _LEAST, _LEAST, a)
+    along = np.where(np.abs(axis) < _LEAST, _LEAST, axis)
     at = np.empty((8, len(half_m)))
-    at[0], at[1] = -half_m, half_m
-    at[2:5], at[5:] = (-h - o) / along, (h - o) / along
-    np.minimum(np.maximum(at, -half_m, out=at), half_m, out=at)
-    slope = (a[:, None] * _beyond(o[:, None] + a[:, None] * at, h[:, None])).sum(0)  # (8, n)
+    np.negative(half_m, out=at[0])
+    at[1] = half_m
+    np.divide(-box_half_m - offset, along, out=at[2:5])
+    np.divide(box_half_m - offset, along, out=at[5:])
+    np.minimum(np.maximum(at, at[0], out=at), half_m, out=at)
+    slope = np.einsum("in,isn->sn", axis, _beyond(offset[:, None] + axis[:, None] * at, box_half_m[:, None]))  # (8, n)
     rises, falls = slope > 0, slope < 0
-    low, high = np.where(rises, -half_m, at).max(0), np.where(falls, half_m, at).min(0)
+    low, high = np.where(rises, at[0], at).max(0), np.where(falls, half_m, at).min(0)
     fall, rise = np.where(rises, -_STEEP, slope).max(0), np.where(falls, _STEEP, slope).min(0)
     # A slope that only rises or only falls makes `low` and `high` the nearest end; between them a slope of 0 is nearest throughout.
     nearest = low - fall / np.where(rise > fall, rise - fall, 1.0) * (high - low)
-    beyond = _beyond(o + a * nearest, h)
-    return np.sqrt((beyond * beyond).sum(0)), beyond.T, nearest
+    beyond = _beyond(offset + axis * nearest, box_half_m)
+    return np.sqrt(np.einsum("in,in->n", beyond, beyond)), beyond, nearest
 
 
 def _beyond(point: Array, half_m: Array) -> Array:

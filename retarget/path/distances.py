@@ -180,21 +180,24 @@ class PairDistances:
         pair = found.pair.take(at)
         box, other = self._box.take(pair), self._round.take(pair)
         before: Indices = placed.centre.shape[1] * found.pose.take(at)
+        box_row, row = before + box, before + other
         centres: Array = placed.centre.reshape(-1, 3)
-        axes: Array = placed.axis.reshape(-1, 3)
-        turn: Array = placed.turn.reshape(-1, 3, 3).take(before + box, 0)  # columns are the box's axes
-        centre: Array = centres.take(before + other, 0)
-        axis: Array = axes.take(before + other, 0)
-        offset = ((centre - centres.take(before + box, 0))[:, None] @ turn)[:, 0]
+        turn: Array = placed.turn.reshape(-1, 3, 3).take(box_row, 0)  # columns are the box's axes
+        centre: Array = centres.take(row, 0)
+        axis: Array = placed.axis.reshape(-1, 3).take(row, 0)
+        offset = np.einsum("ni,nij->jn", centre - centres.take(box_row, 0), turn)
         apart, way, nearest = capsule_to_box(
-            offset, (axis[:, None] @ turn)[:, 0], self._half_m.take(other), self._box_half_m.take(box, 0)
+            offset, np.einsum("ni,nij->jn", axis, turn), self._half_m.take(other), self._box_half_m.T.take(box, 1)
         )
-        found.distance_m[at] = np.maximum(found.distance_m[at], apart - self._radius_m[other])
-        some = apart > 0
-        way = np.where((box == self._shape[0, pair])[:, None], way, -way)  # from the first of the pair to the second
-        found.way[at[some]] = (turn[some] @ way[some, :, None])[..., 0]
-        found.point[at[some]] = centre[some] + nearest[some, None] * axis[some]
-        return ~self._exact_geom[other] | ~some
+        distance = found.distance_m
+        distance[at] = np.maximum(distance.take(at), apart - self._radius_m.take(other))
+        some = np.flatnonzero(apart)
+        to = at.take(some)
+        # From the first of the pair to the second.
+        outward = np.einsum("nij,jn->ni", turn.take(some, 0), way.take(some, 1))
+        found.way[to] = np.where(self._box_is_first.take(pair.take(some))[:, None], outward, -outward)
+        found.point[to] = centre.take(some, 0) + nearest.take(some)[:, None] * axis.take(some, 0)
+        return ~self._exact_geom.take(other) | (apart == 0)
 
     def _measure_by_mujoco(self, placed: Placed, at: Indices, found: Measured) -> None:
         """Write MuJoCo's distances, as `_bound_boxes`."""
@@ -271,6 +274,7 @@ class PairDistances:
         self._box: Indices = np.asarray(np.where(boxes[:, 0], a, b), np.int64)
         self._box[~has_box] = -1
         self._round: Indices = np.where(boxes[:, 0], b, a)
+        self._box_is_first: NDArray[np.bool_] = boxes[:, 0]
         self._every = np.arange(len(pairs), dtype=np.int64)
         self._keep(np.zeros(len(pairs)))
 

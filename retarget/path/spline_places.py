@@ -32,6 +32,8 @@ class SplinePlaces:
 
     def and_within(self, segments: Indices) -> SplinePlaces:
         """Add six places to each of the given segments; a segment that already has them stays as it is."""
+        if not len(segments):
+            return self
         new = np.setdiff1d(segments, self.segment[np.isin(self.u, _WITHIN)])
         segment, u = np.repeat(new, len(_WITHIN)), np.tile(_WITHIN, len(new))
         return SplinePlaces(np.concatenate([self.segment, segment]), np.concatenate([self.u, u]))
@@ -47,9 +49,10 @@ class SplinePlaces:
 
         A segment's pose depends on three control points. The third has at most an eighth of the weight and counts as its neighbour.
         """
-        early, late = (1 - self.u) ** 2 / 2, self.u**2 / 2
-        first = np.where(self.point < self.segment, early, 1 - late)
-        return np.stack([first, 1 - first], 1)
+        share = np.empty((len(self.u), 2))
+        share[:, 0] = np.where(self.u < 0.5, (1 - self.u) ** 2 / 2, 1 - self.u**2 / 2)
+        share[:, 1] = 1 - share[:, 0]
+        return share
 
 
 def on_spline(control: Array, segment: Indices, u: Array) -> Array:
