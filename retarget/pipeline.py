@@ -87,7 +87,7 @@ class Retargeter:
         self.arms: tuple[ArmChain, ...] = self._poser.chains
         self.contact = contact or SelfContact(robot)
         self._hands = Hands(self.kinematics, self.contact, self.limits) if keep_contacts else None
-        self._avoidance = Avoidance(robot, self.contact, self.limits, self._poser.stiffness)
+        self._avoidance = Avoidance(robot, self.contact, self.limits, self._poser.yielding)
         in_arms = [int(j) for arm in self.arms for j in arm.joints]
         self._planner = BlockPlanner(self.contact, self.limits, self._avoidance, self._poser.objective, in_arms)
 

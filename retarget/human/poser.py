@@ -143,15 +143,18 @@ class Poser:
             upper[sides], fore[sides] = arms.directions(q_rad[:, joints].transpose(1, 0, 2))
         return upper, fore
 
-    def stiffness(self, q_rad: Array) -> Array:
-        """(T, J, J) quadratic cost of a small movement away from poses (T, J): change of bone directions, plus that of angles."""
+    def yielding(self, q_rad: Array) -> Array:
+        """(T, J, J) inverses of the quadratic cost K of a small movement away from poses (T, J): x costs x' K x / 2.
+
+        The cost is the change of bone directions, plus that of angles, so it couples the joints of each arm alone.
+        """
         T, J = q_rad.shape
         every = np.zeros((T, J, J))
         every[:, np.arange(J), np.arange(J)] = 1.0
         for arms, joints in zip(self._arms, self._joints, strict=True):
-            hessian = arms.bones(q_rad[:, joints].transpose(1, 0, 2)).hessian()
+            of_arms = np.linalg.inv(arms.bones(q_rad[:, joints].transpose(1, 0, 2)).hessian() + arms.eye)
             for g, of in enumerate(joints):
-                every[:, of[:, None], of] += hessian[g]
+                every[:, of[:, None], of] = of_arms[g]
         return every
 
     def shown(self, poses: Poses, q_rad: Array) -> tuple[Array, Array]:
