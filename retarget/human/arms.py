@@ -27,7 +27,7 @@ from retarget.human.subproblems import Reach, Turn, angle_about, frame, unit
 from retarget.robot.kinematics import cross, skew
 
 Array = NDArray[np.float64]
-_LEAST_ERROR_STEPS, _CUT_STEPS, _OFFSET_STEPS = 7, 3, 3
+_LEAST_ERROR_STEPS, _CUT_STEPS, _OFFSET_STEPS = 5, 3, 3
 _DONE_RAD = 1e-3
 _DAMPING = 1e-3
 _LARGEST_STEP_RAD = 0.6

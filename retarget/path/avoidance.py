@@ -70,7 +70,7 @@ class Avoidance:
     def push_a_little(self, wanted_rad: Array, touching: NDArray[np.bool_], least: LeastDistances) -> Array:
         """Poses (T, J) in which those that touch, (T,) `touching`, are pushed most or all of the way out of contact."""
         clear, some = wanted_rad.copy(), np.flatnonzero(touching)
-        clear[some] = self._pushed_out(clear[some], _AIM_M, least.part(some), _FEW_PUSHES)[0]
+        clear[some] = self._pushed_out(clear[some], _AIM_M, least.part(some), _FEW_PUSHES, enough_m=_AIM_M)[0]
         return clear
 
     def push(self, eased_rad: Array, path_rad: Array, hit: NDArray[np.bool_], strength: float) -> Array:
@@ -126,12 +126,13 @@ class Avoidance:
         return q
 
     def _pushed_out(
-        self, q_rad: Array, aim_m: float, least: LeastDistances, pushes: int = _PUSHES
+        self, q_rad: Array, aim_m: float, least: LeastDistances, pushes: int = _PUSHES, *, enough_m: float = 0.0
     ) -> tuple[Array, NDArray[np.bool_]]:
         """Poses (T, J) moved little until they keep the margin plus `aim_m`, and (T,) whether each keeps the margin.
 
         Each iteration pushes apart some pairs of each pose, the worst first, by the movements of least cost. Between measurements
-        a push changes the distances of the other pairs as their derivatives say.
+        a push changes the distances of the other pairs as their derivatives say. No pose is pushed once none lacks more than
+        `enough_m` of its distance.
         """
         q = q_rad.copy()
         yielding = self._yielding(q_rad)
@@ -141,7 +142,7 @@ class Avoidance:
             pose, lack_m, way, least_m = self._contact.lacking(q[rows], aim_m, least.at(q[rows]))
             free[rows] = True
             free[rows[pose[lack_m > aim_m]]] = False
-            if not len(pose):
+            if lack_m.max(initial=0.0) <= enough_m:
                 break
             some, first, pose = np.unique(pose, return_index=True, return_inverse=True)
             rows, least = rows[some], LeastDistances(q[rows[some]], least_m[some], least.sweep_m)
