@@ -38,10 +38,10 @@ _MORE_M = 0.0015
 _BETWEEN_M = (1 - KEPT) * 0.010
 """Metres of the margin that poses between frames may lack."""
 _DEEP_M, _DEEP_WORSE = 0.5, 0.05
-_STUCK_M, _STUCK_SHARE = 0.1, 0.8
+_STUCK_M, _STUCK_SHARE = 0.25, 0.8
 """Metres of room that all poses lack together and increase of a frame's cost above which the program ends; less metres, and the
 share of them that each of two rounds in a row left, above which it ends as well. Arms are then deep in the body, and the program
-leads them out only from poses pushed out. On 16 recordings and seven robots none that went on led to a path that was taken."""
+leads them out only from poses pushed out. A program whose path has not become worse may still free hands that meet in a clap."""
 _STIFFNESS = 4e4
 """Weight of the squared metres by which a pair is too near: a millimetre costs as much as 11 degrees in one frame."""
 _STEADY = Steady(1e-3, 1e-2)
@@ -190,11 +190,11 @@ def best_of(paths: Iterator[tuple[Array, float]], enough: float) -> tuple[Array,
 def _is_hopeless(lacked_m: list[float], worse: float) -> bool:
     """Whether arms stay deep in the body, by the metres of room that all poses lacked before and after each round.
 
-    Either much is lacking although the path has become worse, or two rounds in a row left most of what was lacking before them.
+    The path must have become worse, and either much be lacking or two rounds in a row have left most of what was lacking.
     """
     *_, before_m, between_m, now_m = np.inf, *lacked_m
-    is_stuck = now_m > _STUCK_M and between_m > _STUCK_SHARE * before_m and now_m > _STUCK_SHARE * between_m
-    return is_stuck or (now_m > _DEEP_M and worse > _DEEP_WORSE)
+    is_stuck = between_m > _STUCK_SHARE * before_m and now_m > _STUCK_SHARE * between_m
+    return worse > _DEEP_WORSE and (now_m > _DEEP_M or (is_stuck and now_m > _STUCK_M))
 
 
 def _held(control_rad: Array, n: int) -> Array:
