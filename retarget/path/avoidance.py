@@ -20,9 +20,6 @@ _AIM_M = 0.002
 _PUSHED_ON_M = 0.004
 """Metres beyond the margin to which a touching path is pushed."""
 _PUSHES, _FEW_PUSHES = 6, 4
-_AT_ONCE = 3
-"""Numbers of times that distances are measured and poses pushed, by default and where the program goes on from there, and number of
-pairs of a pose that are pushed apart, one after another, on each measurement."""
 _MOST_PUSHED_RAD = 0.15
 _COME_STEPS = 5
 """Number of steps in which a pose that pushes cannot free is approached from a clear pose."""
@@ -130,8 +127,7 @@ class Avoidance:
     ) -> tuple[Array, NDArray[np.bool_]]:
         """Poses (T, J) moved little until they keep the margin plus `aim_m`, and (T,) whether each keeps the margin.
 
-        Each iteration pushes apart some pairs of each pose, the worst first, by the movements of least cost. Between measurements
-        a push changes the distances of the other pairs as their derivatives say. No pose is pushed once none lacks more than
+        Each iteration pushes apart the worst pair of each pose by the movement of least cost, until no pose lacks more than
         `enough_m` of its distance.
         """
         q = q_rad.copy()
@@ -139,23 +135,18 @@ class Avoidance:
         rows = np.arange(len(q))
         free = np.zeros(len(q), bool)
         for _ in range(pushes):
-            pose, lack_m, way, least_m = self._contact.lacking(q[rows], aim_m, least.at(q[rows]))
-            free[rows] = True
-            free[rows[pose[lack_m > aim_m]]] = False
-            if lack_m.max(initial=0.0) <= enough_m:
+            lack, way, least_m = self._contact.worst(q[rows], aim_m, least.at(q[rows]))
+            free[rows] = lack <= aim_m
+            if lack.max(initial=0.0) <= enough_m:
                 break
-            some, first, pose = np.unique(pose, return_index=True, return_inverse=True)
-            rows, least = rows[some], LeastDistances(q[rows[some]], least_m[some], least.sweep_m)
-            way *= self._mobility
-            along = (yielding[rows[pose]] @ way[..., None])[..., 0]  # (R, J) movement by which a pair parts, per metre
-            along /= np.vecdot(way, along)[:, None] + _DAMPING
-            moved, left_m = np.zeros((len(rows), q.shape[1])), lack_m
-            for _ in range(_AT_ONCE):
-                worst = np.lexsort((-left_m, pose))[first]
-                push = np.maximum(left_m[worst], 0.0)[:, None] * along[worst]
-                moved += np.minimum(np.maximum(push, -_MOST_PUSHED_RAD), _MOST_PUSHED_RAD)
-                left_m = lack_m - np.vecdot(way, moved[pose])
-            q[rows] = np.minimum(np.maximum(q[rows] + moved, self._low), self._high)
+            some = lack > 0
+            least = LeastDistances(q[rows[some]], least_m[some], least.sweep_m)
+            rows, lack = rows[some], lack[some, None]
+            way = way * self._mobility
+            along = (yielding[rows] @ way[..., None])[..., 0]
+            push = lack * along / (np.vecdot(way, along)[:, None] + _DAMPING)
+            push = np.minimum(np.maximum(push, -_MOST_PUSHED_RAD), _MOST_PUSHED_RAD)
+            q[rows] = np.minimum(np.maximum(q[rows] + push, self._low), self._high)
         return q, free
 
 

@@ -37,22 +37,25 @@ class NearPairs:
 class PairSlopes(PairDistances):
     """Distances of pairs of shapes, and their derivatives by the joints."""
 
-    def lacking(self, q_rad: Array, aim_m: float, least_m: Array) -> tuple[Indices, Array, Array, Array]:
-        """The R pairs nearer than their margin plus `aim_m` in poses (T, J), given lower bounds (T, P) of distances.
+    def worst(self, q_rad: Array, aim_m: float, least_m: Array) -> tuple[Array, Array, Array]:
+        """The worst pair of each pose (T, J) against its margin plus `aim_m`, given lower bounds (T, P) of distances.
 
         Returns:
-            Indices (R,) of the poses, in rising order; metres that each pair lacks, (R,); derivatives of its distance by each
-            joint, (R, J); and the bounds with the measured distances entered, (T, P).
+            Metres that the worst pair lacks, (T,), 0 or less where every pair keeps its distance; derivatives of the pair's
+            distance by each joint, (n, J), in the n poses that lack something; and the bounds with the measured distances
+            entered, (T, P).
         """
         wanted_m = self._margin_m + aim_m
         near = least_m < wanted_m
         if not near.any():
-            return np.zeros(0, np.int64), np.zeros(0), np.zeros((0, q_rad.shape[1])), least_m
+            return np.zeros(len(q_rad)), np.zeros((0, q_rad.shape[1])), least_m
         placed, least_m = self._placed(q_rad, with_joints=True), least_m.copy()
         found = self._nearer(placed, least_m, near, wanted_m)
-        lack_m = wanted_m.take(found.pair) - found.distance_m
-        some = np.flatnonzero(lack_m > 0)
-        return found.pose.take(some), lack_m.take(some), self._slopes(placed, found, some), least_m
+        missing = wanted_m - least_m
+        worst = missing.argmax(1)
+        lack = missing[np.arange(len(q_rad)), worst]
+        some = np.flatnonzero(lack > 0)
+        return lack, self._slopes(placed, found, self._index_in(found, some, worst[some])), least_m
 
     def nearest(self, q_rad: Array, of: Indices) -> tuple[Array, Array]:
         """Distance beyond its margin of the nearest of some pairs, (T,), and the derivatives by each joint, (T, J)."""
@@ -74,6 +77,11 @@ class PairSlopes(PairDistances):
             return self._slopes(placed, found, near[some])
 
         return NearPairs(found.pose[near], room_m[near], grows, least_m, placed, found)
+
+    def _index_in(self, found: Measured, pose: Indices, pair: Indices) -> Indices:
+        """(n,) indices in `found` of pairs in poses, (n,) each."""
+        n = len(self._margin_m)
+        return np.searchsorted(found.pose * n + found.pair, pose * n + pair)
 
     def _slopes(self, placed: Placed, found: Measured, at: Indices) -> Array:
         """(n, J) derivatives by each joint of n of the distances `found`."""
