@@ -21,7 +21,7 @@ _lapack: Any = importlib.import_module("scipy.linalg.lapack")  # has no types
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
 _MOST_STEPS = 50
-_GAP, _RESIDUAL = 1e-5, 1e-7
+_GAP, _RESIDUAL = 3e-6, 1e-7
 """Mean complementarity and largest violation of a row at which a solution counts as found."""
 _START, _START_GAP = 1e-2, 2e-2
 """Least initial value of slacks, and initial product of each slack and its multiplier. Products all alike keep the first steps
