@@ -31,7 +31,7 @@ class ArmKinematics:
         self.axes = np.stack([c.axes for c in chains])  # (G, n, 3)
         self._skews = np.array([[skew(a) for a in c.axes] for c in chains])  # (G, n, 3, 3)
         self._skews_squared = self._skews @ self._skews
-        # Rodrigues: a turn adds the cross product of axis and vector times the sine, and that of axis and it times 1 - cosine.
+        # Rodrigues: a turn adds to a vector sine times its cross product with the axis, and 1 - cosine times the next such product.
         self._turns = np.concatenate([self._skews, self._skews_squared], -2)  # (G, n, 6, 3)
         self._upper_m, self._beside_m = np.stack([c.upper_m for c in chains]), np.stack([c.beside_m for c in chains])
         self.upper0, self.fore0 = unit(self._upper_m), unit(np.stack([c.fore_m for c in chains]))

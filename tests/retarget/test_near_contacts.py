@@ -8,7 +8,7 @@ from gestures import gesture
 from numpy.typing import NDArray
 
 from retarget.path.bounded_poses import BoundedPoses, braking_points
-from retarget.path.refining import Refiner
+from retarget.path.refining import Refiner, _is_hopeless
 from retarget.path.spline_places import SplinePlaces, on_spline
 from retarget.pipeline import Retargeter
 from retarget.robot.loading import load_robot
@@ -86,6 +86,21 @@ def test_braking_poses_change_with_the_last_two_control_points(brakes_after: tup
             moved[after + k] += step
             change = BoundedPoses.of(moved, none, brakes_after, loss_rad).q_rad - poses.q_rad
             np.testing.assert_allclose(change[last], poses.share[last, k] * step, atol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("lacked_m", "worse", "hopeless"),
+    [
+        ([np.inf, 1.5], 0.1, True),  # arms deep in the body after a round that made the path worse
+        ([np.inf, 1.5], 0.0, False),  # hands that meet in a clap may still come free
+        ([np.inf, 0.4, 0.39, 0.38], 0.1, True),
+        ([np.inf, 0.4, 0.2, 0.19], 0.1, False),
+        ([np.inf, 0.2, 0.2, 0.2], 0.1, False),
+    ],
+)
+def test_a_program_ends_where_arms_stay_deep_in_the_body(lacked_m: list[float], worse: float, hopeless: bool) -> None:
+    """Twelve rounds that led nowhere were half of OP3's time near contacts."""
+    assert _is_hopeless(lacked_m, worse) is hopeless
 
 
 @pytest.mark.parametrize(
