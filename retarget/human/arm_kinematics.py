@@ -58,19 +58,16 @@ class ArmKinematics:
         # Poses along the last axis in memory: arrays of three numbers would cost NumPy more than their arithmetic.
         by_joint = np.ascontiguousarray(q.transpose(2, 0, 1))[:, :, None, None]
         sine, versine = np.sin(by_joint), 1 - np.cos(by_joint)
-        every = np.empty(
-            (G, 5, n + 2, M)
-        )  # coordinates x, y, z, x, y of forearm, upper arm, axes from the last to the first
+        # Coordinates x, y, z, x, y of forearm, upper arm, and axes from the last to the first.
+        every = np.empty((G, 5, n + 2, M))
         every[:, :3] = self._zero[..., None]
         for j in range(n - 1, -1, -1):
             turned = every[:, :3, : 1 if j >= self._n_shoulder else n + 1 - j]  # what joint j turns
             steps = (self._turns[:, j] @ turned.reshape(G, 3, -1)).reshape(G, 6, -1, M)
             turned += sine[j] * steps[:, :3] + versine[j] * steps[:, 3:]
         every[:, 3:] = every[:, :2]
-        axes, both = (
-            every[:, :, :1:-1].transpose(0, 2, 1, 3)[:, :, None],
-            every[:, :, 1::-1].transpose(0, 2, 1, 3)[:, None],
-        )
+        axes = every[:, :, :1:-1].transpose(0, 2, 1, 3)[:, :, None]
+        both = every[:, :, 1::-1].transpose(0, 2, 1, 3)[:, None]
         slope = axes[:, :, :, 1:4] * both[:, :, :, 2:]
         slope -= axes[:, :, :, 2:] * both[:, :, :, 1:4]  # (G, n, 2, 3, M): cross products of axes and bones
         if self._has_elbow:
