@@ -1,4 +1,4 @@
-"""The sentence tagger and the gesture classifier on disk: their own layers in half precision, above the packed text encoder."""
+"""Sentence tagger, gesture classifier and sentence parser on disk: their own layers in half precision, above the text encoder."""
 
 from __future__ import annotations
 
@@ -11,12 +11,14 @@ from torch import Tensor
 from mmm_core.errors import CheckpointError
 from mmm_core.inference.checkpoint import TEXT_FILE, WEIGHTS_DIR, file_hash, fill_module, load_tensors, save_tensors
 from mmm_core.model.gesture_classifier import ClassifierConfig, GestureClassifier
+from mmm_core.model.sentence_parser import ParserConfig, SentenceParser
 from mmm_core.model.sentence_tagger import SentenceTagger, TaggerConfig
 from mmm_core.model.text import MiniLmConfig
 
 TAGGER_FILE = WEIGHTS_DIR / "sentence_tagger.safetensors"
 CLASSIFIER_FILE = WEIGHTS_DIR / "gesture_classifier.safetensors"
-_TAGGER, _CLASSIFIER = "mmmd-sentence-tagger", "mmmd-gesture-classifier"
+PARSER_FILE = WEIGHTS_DIR / "sentence_parser.safetensors"
+_TAGGER, _CLASSIFIER, _PARSER = "mmmd-sentence-tagger", "mmmd-gesture-classifier", "mmmd-sentence-parser"
 
 
 def save_tagger(path: Path, tagger: SentenceTagger) -> None:
@@ -27,6 +29,11 @@ def save_tagger(path: Path, tagger: SentenceTagger) -> None:
 def save_classifier(path: Path, classifier: GestureClassifier) -> None:
     """Write a classifier in half precision; an older file stays whole if writing fails."""
     _save(path, classifier.state_dict(), _CLASSIFIER, asdict(classifier.config))
+
+
+def save_parser(path: Path, parser: SentenceParser) -> None:
+    """Write a parser in half precision; an older file stays whole if writing fails."""
+    _save(path, parser.state_dict(), _PARSER, asdict(parser.config))
 
 
 def load_tagger(path: Path = TAGGER_FILE) -> SentenceTagger:
@@ -52,6 +59,18 @@ def load_classifier(path: Path = CLASSIFIER_FILE) -> GestureClassifier:
     classifier = GestureClassifier(sizes, MiniLmConfig())
     fill_module(classifier, tensors, path)
     return classifier
+
+
+def load_parser(path: Path = PARSER_FILE) -> SentenceParser:
+    """Read a parser.
+
+    Raises:
+        CheckpointError: the file is missing, no parser, or was trained on another text encoder.
+    """
+    tensors, config = _load(path, _PARSER)
+    parser = SentenceParser(ParserConfig(**{**config, "tokens": tuple(config["tokens"])}), MiniLmConfig())
+    fill_module(parser, tensors, path)
+    return parser
 
 
 def _save(path: Path, tensors: dict[str, Tensor], kind: str, config: dict[str, Any]) -> None:

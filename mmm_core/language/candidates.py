@@ -40,6 +40,9 @@ EVIDENCE = (
     "one limb twice",  # and these have fewer limbs than commands
     "in turn, said",  # whether it has several steps, and the sentence has words for that
     "nothing",  # whether it has no command
+    "parsed",  # logarithm of the parser's probability of its gestures, and that probability
+    "parsed, surely",
+    "by parser",  # whether only the parser reads the sentence so
 )
 """The kinds of evidence for or against a candidate, in the order of the columns of `evidence`."""
 _AT_ONCE = re.compile(
@@ -56,6 +59,8 @@ _LEAST = 0.01
 _OF_A_PHRASE = math.log(0.97)
 """Logarithm of the least probability of a phrase of the corpus, and of a task that is no gesture: it is refused, not left out."""
 _NO_TAGS = -9.0
+_LEAST_PARSED = -15.0
+"""Logarithm of the probability of gestures that are as good as impossible."""
 
 
 @dataclass(frozen=True)
@@ -68,6 +73,8 @@ class Candidate:
         sure_rules: whether these are sure of the division.
         in_sentence: logarithm of the least probability of a gesture among the marked commands, in their sentence.
         log_share: logarithm of the probability of its division, relative to the likeliest one, for which it is 0.
+        by_parser: whether only the parser reads it so.
+        log_parsed: logarithm of the parser's probability of its gestures.
     """
 
     reading: Reading
@@ -75,6 +82,8 @@ class Candidate:
     sure_rules: bool = False
     in_sentence: float = 0.0
     log_share: float = _NO_TAGS
+    by_parser: bool = False
+    log_parsed: float = 0.0
 
 
 class Ways(NamedTuple):
@@ -114,6 +123,8 @@ def merged(candidates: Iterable[Candidate]) -> list[Candidate]:
             same.sure_rules or one.sure_rules,
             likelier.in_sentence,
             likelier.log_share,
+            same.by_parser and one.by_parser,
+            max(same.log_parsed, one.log_parsed),
         )
     return list(found.values())
 
@@ -153,7 +164,7 @@ def _evidence(one: Candidate, ways: Ways, in_divisions: Mapping[str, float]) -> 
     commands = [command.text for step in one.reading.steps for command in step]
     unknown = set(unknown_commands(one.reading))
     logs = [
-        _log(meant[c]) if c in unknown and not _is_task(c, meant[c]) else max(_log(meant[c]), _OF_A_PHRASE)
+        _log(meant[c]) if c in unknown and not is_task(c, meant[c]) else max(_log(meant[c]), _OF_A_PHRASE)
         for c in commands
     ]
     names = [meant[command].name for command in commands]
@@ -177,6 +188,9 @@ def _evidence(one: Candidate, ways: Ways, in_divisions: Mapping[str, float]) -> 
         one_step and len(frozenset[str]().union(*(c.limbs for c in one.reading.steps[0]))) < len(commands),
         len(one.reading.steps) > 1 and _IN_TURN.search(said) is not None,
         not commands,
+        max(one.log_parsed, _LEAST_PARSED),
+        math.exp(one.log_parsed),
+        one.by_parser,
     ]
 
 
@@ -199,7 +213,7 @@ def _in_divisions(ways: Ways) -> dict[str, float]:
     return {family: some / total for family, some in share.items()}
 
 
-def _is_task(command: str, meant: Meant) -> bool:
+def is_task(command: str, meant: Meant) -> bool:
     """Whether words ask for something that is surely no gesture and has to be refused: "run away"."""
     is_no_gesture = meant.name == OUTSIDE and meant.probability >= SURE
     return is_no_gesture and command.lower().partition(" ")[0] in lines("task_verbs")

@@ -55,6 +55,7 @@ class Texts:
 
     Attributes:
         shares: shares of the kinds of texts.
+        commands: plain phrases of each gesture that begin with a verb.
     """
 
     def __init__(self, rng: random.Random, shares: Shares = SHARES) -> None:
@@ -70,7 +71,7 @@ class Texts:
         ]
         self._parts = [part for one in marked for part in asked_in(one)]
         self._denials = denial_patterns()
-        self._commands = {
+        self.commands = {
             g: [plain_command(g, ""), *filter(_is_imperative, (p.replace(" {n}", "") for p in self._corpus[g]))]
             for g in gestures()
         }
@@ -82,15 +83,16 @@ class Texts:
     def draw(self) -> Drawn:
         """A text with its class and its manners."""
         rng, shares = self._rng, self.shares
-        kinds = (self._outside, self._marked_sentence, self._in_some_manner, self._denial, self._part, self._joined)
+        kinds = (self.outside, self._marked_sentence, self._in_some_manner, self._denial, self._part, self._joined)
         drawn = rng.random()
         for kind, share in zip(kinds, shares, strict=False):
             if drawn < share:
                 return kind()
             drawn -= share
-        return self._gesture()
+        return self.gesture()
 
-    def _outside(self) -> Drawn:
+    def outside(self) -> Drawn:
+        """A text that is no gesture."""
         rng = self._rng
         return Drawn(rng.choice(WRITTEN_OUTSIDE if rng.random() < _SHARE_WRITTEN else self._built), OUTSIDE)
 
@@ -99,7 +101,7 @@ class Texts:
         return Drawn(joined(one.words), None, frozenset(one.manners) - {NO_MANNER})
 
     def _joined(self) -> Drawn:
-        one, other = self._gesture(), self._gesture()
+        one, other = self.gesture(), self.gesture()
         return one if one.name == other.name else _both(one, other, self._rng, self.shares.joined_parts)
 
     def _part(self) -> Drawn:
@@ -120,7 +122,7 @@ class Texts:
         rng = self._rng
         gesture, other = rng.sample(gestures(), 2)
         said, kind, slots = draw_denial(
-            rng, self._denials, rng.choice(self._commands[gesture]), rng.choice(self._commands[other])
+            rng, self._denials, rng.choice(self.commands[gesture]), rng.choice(self.commands[other])
         )
         if rng.random() < _SHARE_LOWER:
             said = said.lower()
@@ -131,7 +133,8 @@ class Texts:
             return Drawn(said, name, None, kind == NOTHING, (slot.start, slot.end))
         return Drawn(said, gesture if kind == MEANT else SEVERAL, None, kind == NOTHING)
 
-    def _gesture(self) -> Drawn:
+    def gesture(self) -> Drawn:
+        """A phrase of a gesture, all gestures equally often."""
         rng = self._rng
         gesture = rng.choice(gestures())
         written = self._written.get(gesture, ())

@@ -27,6 +27,7 @@ Stage = Literal[
     "scope",
     "tagger",
     "gestures",
+    "parser",
     "choice",
     "manner",
     "average",
@@ -69,6 +70,8 @@ def train(
     Example, only the scope of a finished run anew: mmmd train scope --run runs/compact --out model.safetensors
 
     Example, what divides a sentence into commands: mmmd train tagger --out tagger.safetensors
+
+    Example, which gestures a whole sentence asks for: mmmd train parser --out parser.safetensors
 
     Example, what tells which gesture is meant: mmmd train gestures --out gestures.safetensors
 
@@ -121,7 +124,7 @@ def train(
         raise CommandError(f"train {stage}: --models is for `mmmd train average`, which needs two of them or more")
     if stage == "average":
         return _average(models, out)
-    if stage in ("tagger", "gestures", "choice", "manner"):
+    if stage in ("tagger", "gestures", "parser", "choice", "manner"):
         return _reader_part(stage, out)
     config = config or ("ablation" if stage == "ablation" else "compact")
     recipe = read_recipe(config, seed)
@@ -179,11 +182,12 @@ def _average(models: Sequence[Path], out: Path | None) -> int:
     return 0
 
 
-def _reader_part(stage: Literal["tagger", "gestures", "choice", "manner"], out: Path | None) -> int:
-    """Train and write a part of the reader: the tagger, the gesture classifier, or weights of readings or of words of manner."""
+def _reader_part(stage: Literal["tagger", "gestures", "parser", "choice", "manner"], out: Path | None) -> int:
+    """Train and write a part of the reader: one of its networks, or weights of readings or of words of manner."""
     from mmm_core.training.choice_training import train_choice
     from mmm_core.training.gesture_training import train_classifier
     from mmm_core.training.manner_training import train_evidence, train_manner
+    from mmm_core.training.parser_training import train_parser
     from mmm_core.training.tagger_training import train_tagger
 
     if out is None:
@@ -192,6 +196,8 @@ def _reader_part(stage: Literal["tagger", "gestures", "choice", "manner"], out: 
         train_tagger(out)
     elif stage == "gestures":
         train_classifier(out)
+    elif stage == "parser":
+        train_parser(out)
     elif stage == "manner":
         n_texts, n_pieces = train_manner(out)
         n, n_manners, n_found = train_evidence(out.with_name("manner_choice.txt"))

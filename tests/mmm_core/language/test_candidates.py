@@ -45,6 +45,15 @@ def test_candidates_with_the_same_commands_are_one() -> None:
     assert (found.by_rules, found.log_share, found.in_sentence) == (True, -0.5, -0.1)
 
 
+def test_what_the_parser_alone_proposes_is_no_longer_so_where_others_read_it_too() -> None:
+    alone = _candidate([["clap"]], by_parser=True, log_parsed=-1.0)
+    too = _candidate([["clap"]], log_parsed=-40.0)
+    assert [(one.by_parser, one.log_parsed) for one in merged([alone, too])] == [(False, -1.0)]
+    rows = _evidence(alone, too)
+    assert [row["by parser"] for row in rows] == [1, 0]
+    assert [row["parsed"] for row in rows] == [-1.0, -15.0], "no probability counts as less than that of the impossible"
+
+
 def test_commands_at_once_are_the_same_in_any_order_and_others_are_not() -> None:
     at_once = [_candidate([["clap", "nod your head"]]), _candidate([["nod your head", "clap"]])]
     in_turn = [_candidate([["clap"], ["nod your head"]]), _candidate([["nod your head"], ["clap"]])]

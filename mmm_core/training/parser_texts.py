@@ -1,0 +1,156 @@
+"""Draws the sentences that the sentence parser learns from, each with the gestures that it asks for, step by step."""
+
+from __future__ import annotations
+
+import random
+import re
+from typing import NamedTuple
+
+from mmm_core.corpus.denials import MEANT, NOTHING, denial_patterns, draw_denial
+from mmm_core.corpus.labelled_sentences import LabelledSentence, load_labelled_sentences
+from mmm_core.corpus.marked_sentences import TaggedSentence, joined, load_marked_sentences
+from mmm_core.language.gesture_steps import ANY_ARM, ArmGesture, arm_of
+from mmm_core.language.inflection import gerund
+from mmm_core.language.limbs import is_gesture_verb
+from mmm_core.language.plain_gestures import OUTSIDE, gestures, plain_command
+from mmm_core.language.tagged_words import AGAIN, BEGINS, DENIED, FOR_ALL, INSIDE, marked_commands
+from mmm_core.training.gesture_texts import Texts
+from mmm_core.training.slips import slip
+
+_SHARE_WITHOUT_MARKS, _SHARE_WITH_SLIPS, _SHARE_LOWER = 0.2, 0.2, 0.25
+"""Shares of sentences as a recogniser hears them, with a slip, and in lower case."""
+_SHARE_OF_CORPUS, _SHARE_SIDED = 0.6, 0.3
+"""Shares of gestures put into marked sentences in a phrase of the corpus instead of the plain command, and with a hand."""
+_MARKS = (", ", "; ", " then ", ", then ", ". ", " and then ", " after that ", ", and finally ")
+"""What stands between gestures that are joined."""
+_HOLDS_MORE = frozenset({AGAIN, FOR_ALL, DENIED})
+"""Tags of words that belong to more than one command, or to none: other gestures would not fit beside them."""
+_SHORTEST_GERUND = 6
+"""Letters of a gerund, at least: "bring" is none."""
+
+
+class Shares(NamedTuple):
+    """Shares of the kinds of sentences that are drawn; all others are single gestures.
+
+    Attributes:
+        labelled: sentences of writers.
+        refilled: marked sentences with other gestures in the place of theirs.
+        denial: sentences with a negative word.
+        joined: two or three gestures, one after another.
+        outside: texts that are no gesture.
+    """
+
+    labelled: float = 0.4
+    refilled: float = 0.2
+    denial: float = 0.07
+    joined: float = 0.07
+    outside: float = 0.05
+
+
+class ParserTexts:
+    """Draws sentences of all kinds.
+
+    Args:
+        rng: its random numbers.
+    """
+
+    def __init__(self, rng: random.Random) -> None:
+        self._rng, self._texts = rng, Texts(rng)
+        self._labelled = load_labelled_sentences()
+        self._patterns = [(one, places) for one in load_marked_sentences() if (places := _places(one))]
+        self._denials = denial_patterns()
+
+    def draw(self) -> LabelledSentence:
+        """A sentence with what it asks for."""
+        rng = self._rng
+        kinds = (self._labelled_sentence, self.refilled, self._denial, self._joined, self._outside)
+        drawn = rng.random()
+        for kind, share in zip(kinds, Shares(), strict=True):
+            if drawn < share:
+                return kind()
+            drawn -= share
+        return self._gesture()
+
+    def _labelled_sentence(self) -> LabelledSentence:
+        return self._spoilt(self._rng.choice(self._labelled))
+
+    def _outside(self) -> LabelledSentence:
+        """A text that is no gesture."""
+        return LabelledSentence(self._texts.outside().text, ((ArmGesture(ANY_ARM, OUTSIDE),),))
+
+    def _gesture(self) -> LabelledSentence:
+        """A phrase of a gesture."""
+        drawn = self._texts.gesture()
+        name = drawn.name or OUTSIDE
+        return LabelledSentence(drawn.text, ((ArmGesture(arm_of(drawn.text, name), name),),))
+
+    def _joined(self) -> LabelledSentence:
+        """Two or three gestures, one after another, between marks."""
+        rng = self._rng
+        parts = [self._gesture() for _ in range(rng.choice((2, 2, 3)))]
+        texts = [one.text.rstrip(".!?") for one in parts]
+        return self._spoilt(LabelledSentence(rng.choice(_MARKS).join(texts), tuple(one.steps[0] for one in parts)))
+
+    def _denial(self) -> LabelledSentence:
+        """A sentence with a negative word, which asks for nothing, for another gesture, or for the gesture nevertheless."""
+        rng = self._rng
+        gesture, other = rng.sample(gestures(), 2)
+        commands = [rng.choice(self._texts.commands[name]) for name in (gesture, other)]
+        said, kind, slots = draw_denial(rng, self._denials, *commands)
+        asked = [] if kind == NOTHING else [(commands[0], gesture)] if kind == MEANT else [(commands[1], other)]
+        if kind == MEANT and any(slot.is_other for slot in slots):
+            return self._gesture()
+        return self._spoilt(LabelledSentence(said, tuple((ArmGesture(arm_of(c, g), g),) for c, g in asked)))
+
+    def refilled(self) -> LabelledSentence:
+        """A marked sentence with other gestures in the place of its commands."""
+        rng = self._rng
+        one, places = rng.choice(self._patterns)
+        words = list(one.words)
+        put: dict[int, ArmGesture] = {}
+        for start, end, is_gerund in places:
+            gesture = rng.choice(gestures())
+            said = (
+                rng.choice(self._texts.commands[gesture])
+                if rng.random() < _SHARE_OF_CORPUS
+                else plain_command(gesture, "")
+            )
+            if rng.random() < _SHARE_SIDED:
+                side = rng.choice(("left", "right"))
+                said = plain_command(gesture, f"{side} hand") or said
+            put[start] = ArmGesture(arm_of(said, gesture), gesture)
+            words[start:end] = [gerund(said, None) if is_gerund else said] + [""] * (end - start - 1)
+        marked = marked_commands(" ".join(f"w{i}" for i in range(len(one.tags))), one.tags)  # only the order matters
+        numbers = iter(marked.numbers)
+        steps = tuple(tuple(put[next(numbers)[0]] for _ in step) for step in marked.steps)
+        return self._spoilt(LabelledSentence(joined([word for word in words if word]), steps))
+
+    def _spoilt(self, one: LabelledSentence) -> LabelledSentence:
+        """A sentence as people type or a recogniser hears it."""
+        rng, text = self._rng, one.text
+        if rng.random() < _SHARE_WITHOUT_MARKS:
+            text = " ".join(re.sub(r"[^\w\s'-]", " ", text).split()).lower() or text
+        elif rng.random() < _SHARE_LOWER:
+            text = text.lower()
+        if rng.random() < _SHARE_WITH_SLIPS:
+            words = text.split(" ")
+            i = rng.randrange(len(words))
+            words[i] = slip(words[i], rng)
+            text = " ".join(words)
+        return one._replace(text=text)
+
+
+def _places(one: TaggedSentence) -> list[tuple[int, int, bool]]:
+    """First word and end of each command, and whether it begins with a gerund; none if one of them begins with anything else."""
+    if not _HOLDS_MORE.isdisjoint(one.tags):
+        return []
+    found: list[tuple[int, int, bool]] = []
+    for i, tag in enumerate(one.tags):
+        if tag in BEGINS:
+            end = next((k for k in range(i + 1, len(one.tags)) if one.tags[k] != INSIDE), len(one.tags))
+            word = one.words[i].lower()
+            is_gerund = word.endswith("ing") and len(word) >= _SHORTEST_GERUND
+            if not is_gerund and not is_gesture_verb(word):
+                return []
+            found.append((i, end, is_gerund))
+    return found

@@ -1,0 +1,85 @@
+"""Training of the sentence parser, in small."""
+
+from __future__ import annotations
+
+import itertools
+import random
+from collections import Counter
+from pathlib import Path
+
+import pytest
+import torch
+
+from daemon.cli.program import main
+from mmm_core.corpus.labelled_sentences import LabelledSentence, read_labelled
+from mmm_core.errors import CheckpointError
+from mmm_core.inference.checkpoint import load_text_encoder, save_tensors
+from mmm_core.inference.own_layers_file import load_parser
+from mmm_core.language.gesture_steps import steps_of
+from mmm_core.language.plain_gestures import OUTSIDE, gestures
+from mmm_core.model.sentence_parser import likeliest, remembered
+from mmm_core.model.sentence_tagger import word_states
+from mmm_core.training.parser_texts import ParserTexts
+from mmm_core.training.parser_training import Draw, train_parser
+
+GIVEN = [
+    read_labelled(line)
+    for line in (
+        "rap at the gate => knock",
+        "look up after you bow => bow; look/up",
+        "do not clap => | not clap",
+        "right hand on your heart while you nod => right heart + nod",
+    )
+]
+
+
+def _draw() -> Draw:
+    endless = itertools.cycle(GIVEN)
+    return lambda: next(endless)
+
+
+@pytest.mark.long
+def test_it_learns_the_sentences_it_is_given_and_is_read_back(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("mmm_core.training.parser_training.BATCH", 8)
+    path = tmp_path / "parser.safetensors"
+    trained, encoder = train_parser(path, _draw(), steps=120), load_text_encoder()
+    for parser in (trained, load_parser(path)):
+        for one in GIVEN:
+            (states,) = word_states(encoder, parser.config.n_shared, [one.text.split()])
+            assert steps_of(likeliest(parser, remembered(parser, states.states), 2)[0].ids) == one.steps
+    assert all(not p.requires_grad for p in trained.parameters())
+
+
+def test_equal_arguments_give_equal_weights(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("mmm_core.training.parser_training.BATCH", 4)
+    a, b = (train_parser(tmp_path / name, _draw(), steps=2) for name in ("a", "b"))
+    assert all(torch.equal(x, y) for x, y in zip(a.state_dict().values(), b.state_dict().values(), strict=True))
+
+
+def test_sentences_of_every_kind_are_drawn_and_none_keeps_a_slot() -> None:
+    texts = ParserTexts(random.Random(1))
+    drawn = [texts.draw() for _ in range(4000)]
+    assert {one.gesture for sentence in drawn for step in sentence.steps for one in step} == {*gestures(), OUTSIDE}
+    assert not [one.text for one in drawn if any(slot in one.text for slot in ("{v}", "{w}", "{S}", "{n}", "{D}"))]
+    n_steps = Counter(len(one.steps) for one in drawn)
+    assert all(n_steps[n] > 50 for n in range(4))
+    assert sum(len(step) > 1 for one in drawn for step in one.steps) > 100
+
+
+def test_the_gestures_put_into_a_marked_sentence_are_its_steps() -> None:
+    texts = ParserTexts(random.Random(2))
+    drawn: list[LabelledSentence] = [texts.refilled() for _ in range(300)]
+    assert all(one.steps and len(one.steps) <= 5 for one in drawn)
+    assert len({one.steps for one in drawn}) > 200
+
+
+def test_a_parser_of_another_text_encoder_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "other.safetensors"
+    save_tensors(path, {}, "mmmd-sentence-parser", {"config": {}, "text_encoder": "0" * 64})
+    with pytest.raises(CheckpointError, match="the packed text encoder"):
+        load_parser(path)
+
+
+def test_the_command_wants_a_file_for_the_parser(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["train", "parser"]) == 2
+    assert "--out" in capsys.readouterr().err
