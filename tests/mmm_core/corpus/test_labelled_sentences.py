@@ -43,7 +43,7 @@ def test_a_line_that_cannot_be_read_is_refused(line: str) -> None:
         read_labelled(line, Path("some.txt"))
 
 
-def test_all_that_ship_can_be_read_and_none_is_a_sentence_of_an_evaluation() -> None:
+def test_all_that_ship_are_read_and_none_is_of_an_evaluation() -> None:
     given = load_labelled_sentences()
     assert len(given) > 9_000
     named = {one.gesture for sentence in given for step in sentence.steps for one in step}

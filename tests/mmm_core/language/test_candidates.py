@@ -45,7 +45,7 @@ def test_candidates_with_the_same_commands_are_one() -> None:
     assert (found.by_rules, found.log_share, found.in_sentence) == (True, -0.5, -0.1)
 
 
-def test_what_the_parser_alone_proposes_is_no_longer_so_where_others_read_it_too() -> None:
+def test_a_proposal_that_others_read_too_is_not_the_parsers_alone() -> None:
     alone = _candidate([["clap"]], by_parser=True, log_parsed=-1.0)
     too = _candidate([["clap"]], log_parsed=-40.0)
     assert [(one.by_parser, one.log_parsed) for one in merged([alone, too])] == [(False, -1.0)]

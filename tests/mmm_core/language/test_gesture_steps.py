@@ -80,7 +80,7 @@ def test_the_plain_command_of_a_gesture_names_its_own_arm(one: ArmGesture) -> No
         ("sing with your left hand", OUTSIDE, ANY_ARM),
     ],
 )
-def test_the_arm_is_the_one_that_words_name_where_the_gesture_has_a_choice(words: str, gesture: str, arm: str) -> None:
+def test_the_arm_is_the_one_that_words_name_where_there_is_a_choice(words: str, gesture: str, arm: str) -> None:
     assert arm_of(words, gesture) == arm
 
 

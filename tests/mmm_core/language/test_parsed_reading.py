@@ -42,7 +42,7 @@ def test_the_gestures_of_a_reading_are_those_that_its_commands_mean() -> None:
         ),
     ],
 )
-def test_a_command_takes_words_number_and_manner_from_a_reading_that_has_the_gesture(
+def test_a_command_takes_words_and_manner_from_a_reading_with_its_gesture(
     steps: tuple[tuple[ArmGesture, ...], ...], words: list[list[str]]
 ) -> None:
     assert _words(reading_in(steps, "text", [READ], MEANT)) == words
@@ -52,7 +52,7 @@ def test_what_is_no_gesture_cannot_be_said() -> None:
     assert reading_in(((ArmGesture(ANY_ARM, OUTSIDE),),), "text", [READ], MEANT) is None
 
 
-def test_what_is_denied_stays_denied_and_where_nothing_is_asked_for_all_is() -> None:
+def test_what_is_denied_stays_so_and_all_is_where_nothing_is_asked_for() -> None:
     denying = Reading("text", ((PlainCommand("bow"),),), denied=("wave",))
     found = reading_in(((ArmGesture(ANY_ARM, "bow"),),), "text", [READ, denying], MEANT)
     assert found is not None

@@ -73,7 +73,7 @@ def test_a_narrow_search_gives_answers_with_their_own_probabilities(
     assert [one.log_probability for one in found] == pytest.approx(logs, abs=1e-4)
 
 
-def test_answers_of_other_lengths_beside_it_and_padding_of_the_sentence_change_nothing(parser: SentenceParser) -> None:
+def test_other_lengths_beside_an_answer_and_padding_change_nothing(parser: SentenceParser) -> None:
     states = torch.randn(1, 5, TEXT.width)
     ids = torch.tensor([[START_ID, 2, 3]])
     mask = torch.ones(1, 5, dtype=torch.bool)
