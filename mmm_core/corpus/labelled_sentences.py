@@ -37,23 +37,24 @@ def load_labelled_sentences(folder: Path = LABELLED_SENTENCES) -> list[LabelledS
     """The sentences of the `.txt` files of a folder, in the order of the files' names, without those that are withheld from training.
 
     Raises:
-        TrainingDataError: a line names a gesture that there is not, or has no steps.
+        TrainingDataError: a line has no " =>", no sentence, or names a gesture that there is not.
     """
     read = [read_labelled(line, path) for path in sorted(folder.glob("*.txt")) for line in lines_of(path)]
     return [one for one in read if not is_withheld(one.text)]
 
 
 def read_labelled(line: str, path: Path = LABELLED_SENTENCES) -> LabelledSentence:
-    """A line as a sentence with what it asks for.
+    """A line as a sentence with what it asks for; numbers, manner and what is denied are read over.
 
     >>> read_labelled("before you clap, left hand up => left raise; clap x2").steps
     ((ArmGesture(arm='left', gesture='raise'),), (ArmGesture(arm='any', gesture='clap'),))
     """
     text, arrow, label = line.rpartition(" =>")
-    asked, *_denied = _DENIED.split(f" {label.strip()}")
-    steps = [[_command(said, line, path) for said in step.split("+")] for step in asked.split(";") if step.strip()]
     if not arrow or not text.strip():
         raise TrainingDataError(path, "", repr(line), "a sentence, => and its steps")
+    asked, *_denied = _DENIED.split(f" {label.strip()}")
+    of_steps = asked.split(";") if asked.strip() else []
+    steps = [[_command(said, line, path) for said in step.split("+")] for step in of_steps]
     return LabelledSentence(text.strip(), tuple(map(tuple, steps)))
 
 

@@ -6,13 +6,13 @@ the whole sentence asks for. Of all readings that come of it the likeliest is ta
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from itertools import chain, takewhile
 
 import numpy as np
 
-from mmm_core.generate.word_models import Encoded, WordModels
+from mmm_core.generate.word_models import Encoded, Parse, WordModels
 from mmm_core.inference.onednn_linear import Packing
 from mmm_core.language.asides import without_asides
 from mmm_core.language.candidates import Candidate, Ways, chosen, commands_of, in_sentence, is_task, merged
@@ -22,9 +22,11 @@ from mmm_core.language.gesture_steps import is_all_gestures
 from mmm_core.language.hard_phrases import without_hard_phrases
 from mmm_core.language.joined import with_parted_commands
 from mmm_core.language.manner_words import likely_manners
-from mmm_core.language.parsed_reading import reading_in, steps_asked
+from mmm_core.language.parsed_reading import keeps_denials, reading_in, steps_asked
 from mmm_core.language.plain_gestures import (
     OUTSIDE,
+    SURELY_DENIED,
+    Meant,
     alternates,
     in_plain_words,
     is_likely_outside,
@@ -106,14 +108,14 @@ class SentenceReader:
         return self._ways(text, words, self._models.encode(words)) if words else None
 
     def _words_to_understand(self, by_rules: Reading, text: str) -> str:
-        """The words of a text with which tagger and classifier help; empty where they do not."""
+        """The words of a text that the networks read; empty where the rules alone do."""
         if by_rules.text != text or not (needs_tags(by_rules) or leaves_words_out(by_rules)):
             return ""
         words = _in_order(strip_emoji(text))
         return words if 0 < len(words_of(words)) <= MAX_WORD_PIECES else ""
 
     def _ways(self, text: str, words: str, states: Encoded) -> Ways | None:
-        """The ways to read the words of a text, by the rules and by tags, also with its manner in plain words."""
+        """The ways to read the words of a text: by the rules, by tags and by the parser, also with its manner in plain words."""
         by_rules = read(words)
         is_denial = not by_rules.steps and surely_denies(words)
         if is_denial or not needs_tags(by_rules) or (not by_rules.denied and is_likely_outside(states.meant)):
@@ -144,22 +146,33 @@ class SentenceReader:
     def _parsed(self, candidates: list[Candidate], text: str, states: Encoded) -> list[Candidate]:
         """Candidates and those that the parser proposes, each with the parser's probability of its gestures."""
         parse = self._models.parse(states)
-        meant = self._models.classes(commands_of(candidates))
-        readings = [one.reading for one in candidates]
-        found = list(candidates)
-        if not any(map(alternates, readings)) and not any(is_task(text, one) for text, one in meant.items()):
-            # An answer that is less likely than one with something that is no gesture would leave that out.
-            answers = takewhile(is_all_gestures, parse.likeliest(_PROPOSALS))
-            proposed = [reading_in(steps, text, readings, meant) for steps in answers]
-            is_denial = any(one.denied for one in readings)  # what is denied must not be done
-            found += [
-                Candidate(one, by_parser=True)
-                for one in proposed
-                if one is not None and (one.denied if is_denial else one.steps or may_deny(text))
-            ]
-            meant = self._models.classes(commands_of(found))
+        found = [*candidates, *self._proposed(candidates, text, states.meant, parse)]
+        meant = self._models.classes(commands_of(found))
         logs = parse.log_likelihoods([steps_asked(one.reading, meant) for one in found])
         return merged(replace(one, log_parsed=log) for one, log in zip(found, logs, strict=True))
+
+    def _proposed(self, candidates: Sequence[Candidate], text: str, whole: Meant, parse: Parse) -> list[Candidate]:
+        """Readings in the gestures that the parser finds likeliest.
+
+        None where another reading has a task that must be refused, or is one command of arms in turn. A sentence that may deny and
+        in all likelihood asks for nothing has no commands.
+        """
+        readings = [one.reading for one in candidates]
+        meant = self._models.classes(commands_of(candidates))
+        if any(map(alternates, readings)) or any(is_task(command, one) for command, one in meant.items()):
+            return []
+        acts = self._models.classes(list(dict.fromkeys(chain.from_iterable(one.denied for one in readings))))
+        may_be_nothing = may_deny(text)
+        is_nothing = may_be_nothing and whole.denied >= SURELY_DENIED
+        # Answers after one with something that is no gesture are dropped: they would leave out what must be refused.
+        answers = takewhile(is_all_gestures, parse.likeliest(_PROPOSALS))
+        allowed = (
+            steps
+            for steps in answers
+            if (not is_nothing if steps else may_be_nothing) and keeps_denials(steps, readings, meant, acts)
+        )
+        found = (reading_in(steps, text, readings, meant) for steps in allowed)
+        return [Candidate(one, by_parser=True) for one in found if one is not None]
 
     def _candidates(self, words: str, states: Encoded) -> list[Candidate]:
         """The readings of words by the rules and by each likely sequence of tags."""

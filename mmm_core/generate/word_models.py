@@ -6,6 +6,7 @@ mirrored sentence is understood as its mirror image.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import chain
@@ -14,10 +15,11 @@ import numpy as np
 import torch
 from numpy.typing import NDArray
 
+from mmm_core.errors import CheckpointError
 from mmm_core.inference.checkpoint import load_text_encoder
 from mmm_core.inference.onednn_linear import Packing, pack
-from mmm_core.inference.own_layers_file import load_classifier, load_parser, load_tagger
-from mmm_core.language.gesture_steps import GestureSteps, mirrored, steps_of, token_ids
+from mmm_core.inference.own_layers_file import PARSER_FILE, load_classifier, load_parser, load_tagger
+from mmm_core.language.gesture_steps import GestureSteps, in_every_order, mirrored, steps_of, token_ids, tokens
 from mmm_core.language.mirroring import canonical, mirror_words
 from mmm_core.language.plain_gestures import Meant, gesture_of
 from mmm_core.language.tagged_words import MarkedCommands, words_of
@@ -75,6 +77,13 @@ class WordModels:
             CheckpointError: a file is missing or does not fit.
         """
         tagger, classifier, parser = load_tagger(), load_classifier(), load_parser()
+        if parser.config.tokens != tokens():
+            raise CheckpointError(
+                PARSER_FILE,
+                "tokens",
+                "other gestures",
+                "those of plain_gestures.txt; make a new one: mmmd train parser",
+            )
         for one in (tagger, classifier, parser):
             pack(one, precision)
         return cls(encoder or load_text_encoder(), tagger, classifier, parser)
@@ -143,11 +152,17 @@ class Parse:
         return [self._seen(steps) for steps in found if steps is not None]
 
     def log_likelihoods(self, answers: Sequence[GestureSteps]) -> list[float]:
-        """The logarithm of the probability of each answer, of the beginning of one that is too long."""
-        longest = self._parser.config.longest
-        return log_likelihoods(
-            self._parser, self._remembered, [token_ids(self._seen(one))[:longest] for one in answers]
-        )
+        """The logarithm of the probability of each answer; of what is done at the same time, in the likeliest order.
+
+        An answer that is longer than any that the parser has learnt from is impossible.
+        """
+        orders = [[token_ids(one) for one in in_every_order(self._seen(answer))] for answer in answers]
+        fitting = [ids for some in orders for ids in some if len(ids) <= self._parser.config.longest]
+        logs = iter(log_likelihoods(self._parser, self._remembered, fitting) if fitting else ())
+        return [
+            max((next(logs) for ids in some if len(ids) <= self._parser.config.longest), default=-math.inf)
+            for some in orders
+        ]
 
     def _seen(self, steps: GestureSteps) -> GestureSteps:
         return mirrored(steps) if self._is_image else steps

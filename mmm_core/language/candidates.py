@@ -83,7 +83,7 @@ class Candidate:
     in_sentence: float = 0.0
     log_share: float = _NO_TAGS
     by_parser: bool = False
-    log_parsed: float = 0.0
+    log_parsed: float = -math.inf
 
 
 class Ways(NamedTuple):

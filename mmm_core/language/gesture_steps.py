@@ -9,6 +9,7 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from functools import cache
+from itertools import islice, permutations, product
 from typing import NamedTuple
 
 from mmm_core.language.mirroring import mirror_words
@@ -85,6 +86,11 @@ def with_own_arm(one: ArmGesture) -> ArmGesture:
 def plainly(one: ArmGesture) -> str:
     """The plain command of a gesture with its arm; empty where there is none."""
     return plain_command(one.gesture, _SAID.get(one.arm, "")) if one.gesture != OUTSIDE else ""
+
+
+def in_every_order(steps: GestureSteps, most: int = 12) -> list[GestureSteps]:
+    """The steps with what is done at the same time in every order, `most` of them at most."""
+    return list(islice(product(*map(permutations, steps)), most))
 
 
 def is_all_gestures(steps: GestureSteps) -> bool:

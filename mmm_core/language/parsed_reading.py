@@ -1,15 +1,18 @@
-"""Readings in the gestures that the sentence parser proposes, and the gestures of readings, whose probability it tells."""
+"""Converts answers of the sentence parser into readings, and readings into gestures, whose probability the parser computes.
+
+What other readings of the sentence deny is kept: an answer that might do it is no reading.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 
-from mmm_core.language.commands import PlainCommand, Reading
+from mmm_core.language.commands import MOST_AT_ONCE, MOST_STEPS, PlainCommand, Reading
 from mmm_core.language.count_words import count_asked
-from mmm_core.language.gesture_steps import ArmGesture, GestureSteps, arm_of, plainly
+from mmm_core.language.gesture_steps import LEFT, RIGHT, ArmGesture, GestureSteps, arm_of, plainly, with_own_arm
 from mmm_core.language.limbs import limbs_of
-from mmm_core.language.plain_gestures import OUTSIDE, Meant, is_gesture
+from mmm_core.language.plain_gestures import OUTSIDE, Meant, family_of, is_gesture, is_sure_of
 
 
 def steps_asked(reading: Reading, meant: Mapping[str, Meant]) -> GestureSteps:
@@ -23,10 +26,10 @@ def steps_asked(reading: Reading, meant: Mapping[str, Meant]) -> GestureSteps:
 
 
 def reading_in(steps: GestureSteps, text: str, others: Sequence[Reading], meant: Mapping[str, Meant]) -> Reading | None:
-    """A reading with given gestures; None where one of these has no plain command.
+    """A reading with given gestures; None where a gesture has no such arm, or for more steps or commands than a text may have.
 
-    A command takes its words, number and manner from another reading that has the gesture: from the first of these with the same
-    arm, else from the first.
+    A command takes its words, number and manner from the first reading that has the gesture with its arm, else the number and the
+    manner from the first that has the gesture. What other readings deny is denied.
 
     Args:
         steps: the gestures.
@@ -34,14 +37,54 @@ def reading_in(steps: GestureSteps, text: str, others: Sequence[Reading], meant:
         others: its other readings.
         meant: what each of their commands means by itself.
     """
-    if any(not plainly(one) for step in steps for one in step):
+    if len(steps) > MOST_STEPS or any(len(step) > MOST_AT_ONCE for step in steps):
         return None
-    said = [(command, _asked(command, meant[command.text])) for other in others for s in other.steps for command in s]
-    found = tuple(tuple(_command(one, said) for one in step) for step in steps)
+    flat = [one for step in steps for one in step]
+    if any(one != with_own_arm(one) or not plainly(one) for one in flat):
+        return None
+    said = [[(c, _asked(c, meant[c.text])) for step in other.steps for c in step] for other in others]
+    commands = iter([_command(one, flat[:i].count(one), said) for i, one in enumerate(flat)])
     denied = next((other.denied for other in others if other.denied), ())
     if not steps and not denied:
         denied = tuple(command.text for step in others[0].steps for command in step) if others else ()
-    return Reading(text, found, denied)
+    return Reading(text, tuple(tuple(next(commands) for _ in step) for step in steps), denied)
+
+
+def keeps_denials(
+    steps: GestureSteps, others: Sequence[Reading], meant: Mapping[str, Meant], acts: Mapping[str, Meant]
+) -> bool:
+    """Whether steps surely have nothing that another reading of the sentence denies.
+
+    Beside a denial whose act is not known, only gestures of readings with that denial are sure.
+
+    Args:
+        steps: the gestures.
+        others: the other readings.
+        meant: what each of their commands means by itself.
+        acts: what each of the acts that they deny means by itself.
+    """
+    flat = [one for step in steps for one in step]
+    for other in others:
+        if not all(is_sure_of(acts[words]) for words in other.denied):
+            asked = {one.gesture for step in steps_asked(other, meant) for one in step}
+            if any(one.gesture not in asked for one in flat):
+                return False
+        denied = [
+            ArmGesture(arm_of(words, acts[words].name), acts[words].name)
+            for words in other.denied
+            if is_gesture(acts[words].name)
+        ]
+        if any(_may_be(one, act) for one in flat for act in denied):
+            return False
+    return True
+
+
+def _may_be(one: ArmGesture, denied: ArmGesture) -> bool:
+    """Whether a gesture may be the denied one: of the same family, with no other direction and not with the other arm."""
+    arms = {arm_of(plainly(one), one.gesture), denied.arm}
+    ways, denied_ways = ({*gesture.partition("/")[2].split()} for gesture in (one.gesture, denied.gesture))
+    is_same_way = ways <= denied_ways or denied_ways <= ways
+    return family_of(one.gesture) == family_of(denied.gesture) and is_same_way and arms != {LEFT, RIGHT}
 
 
 def _asked(command: PlainCommand, meant: Meant) -> ArmGesture:
@@ -49,15 +92,23 @@ def _asked(command: PlainCommand, meant: Meant) -> ArmGesture:
     return ArmGesture(arm_of(command.text, gesture), gesture)
 
 
-def _command(one: ArmGesture, said: Sequence[tuple[PlainCommand, ArmGesture]]) -> PlainCommand:
-    """The command of a gesture, in the words of another reading where one has it."""
-    same = [command for command, asked in said if asked == one]
-    if same:
-        return same[0]
+def _command(one: ArmGesture, n_before: int, said: Sequence[Sequence[tuple[PlainCommand, ArmGesture]]]) -> PlainCommand:
+    """The command of a gesture that `n_before` commands before it ask for as well, in the words of a reading that has it."""
+    if (same := next(_others(said, n_before, lambda asked: asked == one), None)) is not None:
+        return same
     words = plainly(one)
-    alike = next((command for command, asked in said if asked.gesture == one.gesture), None)
+    alike = next(_others(said, n_before, lambda asked: asked.gesture == one.gesture), None)
     if alike is None:
         return PlainCommand(words, limbs=limbs_of(words))
     count = count_asked(alike.text)
     words += f" {count} times" if count and count > 1 else " once" if count else ""
     return replace(alike, text=words, limbs=limbs_of(words))
+
+
+def _others(
+    said: Sequence[Sequence[tuple[PlainCommand, ArmGesture]]], n_before: int, fits: Callable[[ArmGesture], bool]
+) -> Iterator[PlainCommand]:
+    """The fitting commands of readings: first those after `n_before` fitting ones of their reading, then the last of each."""
+    fitting = [[command for command, asked in reading if fits(asked)] for reading in said]
+    yield from (commands[n_before] for commands in fitting if len(commands) > n_before)
+    yield from (commands[-1] for commands in fitting if commands)

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import NamedTuple, cast
 
 import torch
 import torch.nn.functional as F
@@ -99,7 +99,7 @@ class SentenceParser(nn.Module):
         for layer in self.layers:
             x = F.dropout(layer(x, mask[:, None, None, :]), dropout, self.training)
         memory = self.memory(x)
-        return [layer.remember(memory) for layer in self.decoder if isinstance(layer, DecoderLayer)]
+        return [cast("DecoderLayer", layer).remember(memory) for layer in self.decoder]
 
     def forward(self, remembered: Sequence[Tensor], mask: Tensor, ids: Tensor, dropout: float = 0.0) -> Tensor:
         """Scores (B, T, tokens) of the token after each of (B, T) tokens.

@@ -81,7 +81,8 @@ class ParserTexts:
     def _gesture(self) -> LabelledSentence:
         """A phrase of a gesture."""
         drawn = self._texts.gesture()
-        name = drawn.name or OUTSIDE
+        name = drawn.name
+        assert name, "a phrase of a gesture names it"
         return LabelledSentence(drawn.text, ((ArmGesture(arm_of(drawn.text, name), name),),))
 
     def _joined(self) -> LabelledSentence:
@@ -98,7 +99,7 @@ class ParserTexts:
         commands = [rng.choice(self._texts.commands[name]) for name in (gesture, other)]
         said, kind, slots = draw_denial(rng, self._denials, *commands)
         asked = [] if kind == NOTHING else [(commands[0], gesture)] if kind == MEANT else [(commands[1], other)]
-        if kind == MEANT and any(slot.is_other for slot in slots):
+        if kind == MEANT and any(slot.is_other for slot in slots):  # which of both is asked for first, nobody has said
             return self._gesture()
         return self._spoilt(LabelledSentence(said, tuple((ArmGesture(arm_of(c, g), g),) for c, g in asked)))
 

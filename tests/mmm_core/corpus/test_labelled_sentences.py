@@ -37,7 +37,7 @@ def test_commands_at_once_are_one_step() -> None:
     assert [len(step) for step in read_labelled("a => left heart + nod; bow").steps] == [2, 1]
 
 
-@pytest.mark.parametrize("line", ["no label", "a => frobnicate", "a => left", "=> wave"])
+@pytest.mark.parametrize("line", ["no label", "a => frobnicate", "a => left", "=> wave", "a => wave;"])
 def test_a_line_that_cannot_be_read_is_refused(line: str) -> None:
     with pytest.raises(TrainingDataError, match=re.escape(repr(line))):
         read_labelled(line, Path("some.txt"))
@@ -45,9 +45,10 @@ def test_a_line_that_cannot_be_read_is_refused(line: str) -> None:
 
 def test_all_that_ship_are_read_and_none_is_of_an_evaluation() -> None:
     given = load_labelled_sentences()
-    assert len(given) > 9_000
+    assert len(given) == 10_020
     named = {one.gesture for sentence in given for step in sentence.steps for one in step}
     assert named == {*gestures(), OUTSIDE}
+    assert len(SETS) > 8
     judged = {_letters(one.text) for name in SETS for one in read_sentences(name)}
     assert not judged & {_letters(one.text) for one in given}
 

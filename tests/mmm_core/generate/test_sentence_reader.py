@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -10,8 +11,11 @@ import pytest
 
 from mmm_core.corpus.heldout import PROBES, read_sentences
 from mmm_core.generate.sentence_reader import SentenceReader
+from mmm_core.generate.word_models import WordModels
 from mmm_core.language.commands import Reading
+from mmm_core.language.gesture_steps import ANY_ARM, ArmGesture, GestureSteps
 from mmm_core.language.mirroring import mirror_words
+from mmm_core.language.plain_gestures import OUTSIDE
 from mmm_core.language.reading import read
 from tests.support.sizes import few_and_long
 
@@ -110,6 +114,48 @@ def test_what_the_rules_deny_stays_denied(reader: SentenceReader, every: int) ->
     assert len(given) > 150
     found = [(text, reader.read(text)) for text in given[::every]]
     assert [text for text, one in found if not one.denied and not _manners(one)] == [], "what is denied may be a manner"
+    done = [(text, {c.text for step in one.steps for c in step} & {*read(text).denied}) for text, one in found]
+    assert [one for one in done if one[1]] == []
+
+
+class _Answers:
+    """A parser that asks for a clap and a wave whatever is said."""
+
+    def __init__(self, steps: GestureSteps) -> None:
+        self._steps = steps
+
+    def likeliest(self, _n: int) -> list[GestureSteps]:
+        return [self._steps]
+
+    def log_likelihoods(self, answers: Sequence[GestureSteps]) -> list[float]:
+        return [0.0 if answer == self._steps else -99.0 for answer in answers]
+
+
+@pytest.mark.parametrize(
+    ("text", "gestures", "is_proposed"),
+    [
+        (
+            "have a good old clap for the lads at the back there, everybody is looking forward to it",
+            ("clap", "wave"),
+            True,
+        ),
+        ("have a good old clap for the lads at the back there, but do not wave at anybody", ("clap", "wave"), False),
+        ("have a good old clap for the lads at the back there, then run away", ("clap", "wave"), False),
+        (
+            "have a good old clap for the lads at the back there, everybody is looking forward to it",
+            ("clap", OUTSIDE),
+            False,
+        ),
+    ],
+)
+def test_the_parser_proposes_nothing_that_is_denied_or_must_be_refused(
+    reader: SentenceReader, monkeypatch: pytest.MonkeyPatch, text: str, gestures: tuple[str, ...], is_proposed: bool
+) -> None:
+    steps = tuple((ArmGesture(ANY_ARM, gesture),) for gesture in gestures)
+    monkeypatch.setattr(WordModels, "parse", lambda *_: _Answers(steps))
+    ways = reader.ways_to_read(text)
+    assert ways is not None
+    assert any(one.by_parser for one in ways.candidates) is is_proposed
 
 
 @pytest.mark.parametrize(

@@ -16,6 +16,7 @@ from mmm_core.language.gesture_steps import (
     START,
     ArmGesture,
     arm_of,
+    in_every_order,
     mirrored,
     plainly,
     steps_of,
@@ -50,6 +51,13 @@ def test_tokens_of_steps_are_read_back(steps: tuple[tuple[ArmGesture, ...], ...]
 )
 def test_tokens_in_another_order_are_no_steps(names: tuple[str, ...]) -> None:
     assert steps_of([tokens().index(name) for name in names]) is None
+
+
+def test_what_is_done_at_once_comes_in_every_order() -> None:
+    nod, bow, clap = (ArmGesture(ANY_ARM, name) for name in ("nod", "bow", "clap"))
+    assert in_every_order(((nod, bow), (clap,))) == [((nod, bow), (clap,)), ((bow, nod), (clap,))]
+    assert in_every_order(()) == [()]
+    assert len(in_every_order(((nod, bow, clap),) * 8)) == 12
 
 
 @given(STEPS)

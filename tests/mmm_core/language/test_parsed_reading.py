@@ -5,14 +5,16 @@ from __future__ import annotations
 import pytest
 
 from mmm_core.language.commands import PlainCommand, Reading
-from mmm_core.language.gesture_steps import ANY_ARM, LEFT, RIGHT, ArmGesture
+from mmm_core.language.gesture_steps import ANY_ARM, BOTH, LEFT, RIGHT, ArmGesture
 from mmm_core.language.manner import Manner
-from mmm_core.language.parsed_reading import reading_in, steps_asked
+from mmm_core.language.parsed_reading import keeps_denials, reading_in, steps_asked
 from mmm_core.language.plain_gestures import OUTSIDE, SEVERAL, Meant
 
 MEANT = {
     "wave with your left hand twice": Meant("wave", 0.9),
     "bow": Meant("bow", 1.0),
+    "raise your right hand": Meant("raise", 1.0),
+    "look up": Meant("look/up", 0.9),
     "sing a song": Meant(OUTSIDE, 0.9),
     "both of it": Meant(SEVERAL, 0.9),
 }
@@ -50,6 +52,45 @@ def test_a_command_takes_words_and_manner_from_a_reading_with_its_gesture(
 
 def test_what_is_no_gesture_cannot_be_said() -> None:
     assert reading_in(((ArmGesture(ANY_ARM, OUTSIDE),),), "text", [READ], MEANT) is None
+
+
+@pytest.mark.parametrize(
+    ("one", "denied", "is_kept"),
+    [
+        (ArmGesture(LEFT, "wave"), ["wave with your left hand twice"], False),
+        (ArmGesture(RIGHT, "wave"), ["wave with your left hand twice"], True),
+        (ArmGesture(BOTH, "wave"), ["wave with your left hand twice"], False),
+        (ArmGesture(ANY_ARM, "wave"), ["wave with your left hand twice"], False),
+        (ArmGesture(ANY_ARM, "raise"), ["raise your right hand"], False),
+        (ArmGesture(ANY_ARM, "look/up left"), ["look up"], False),
+        (ArmGesture(ANY_ARM, "look/down"), ["look up"], True),
+        (ArmGesture(ANY_ARM, "bow"), ["look up", "bow"], False),
+        (ArmGesture(ANY_ARM, "nod"), ["both of it"], False),
+        (ArmGesture(ANY_ARM, "bow"), ["both of it"], True),
+        (ArmGesture(ANY_ARM, "nod"), [], True),
+    ],
+)
+def test_what_a_reading_denies_is_not_done(one: ArmGesture, denied: list[str], is_kept: bool) -> None:
+    """Beside a denial of unknown words only what its reading does is sure: a bow and a wave here."""
+    denying = Reading("text", READ.steps, denied=tuple(denied))
+    assert keeps_denials(((one,),), [READ, denying], MEANT, MEANT) is is_kept
+
+
+def test_what_nobody_could_do_is_no_reading() -> None:
+    nod = ArmGesture(ANY_ARM, "nod")
+    assert reading_in(((nod,) * 4,), "text", [READ], MEANT) is None
+    assert reading_in(((nod,),) * 9, "text", [READ], MEANT) is None
+    assert reading_in(((ArmGesture(BOTH, "raise"),),), "text", [READ], MEANT) is None
+
+
+def test_a_gesture_asked_for_twice_has_each_of_its_manners() -> None:
+    slow, fast = (PlainCommand("bow", Manner(tempo=tempo)) for tempo in (0.62, 1.6))
+    both = Reading("text", ((slow,), (fast,)))
+    bow = (ArmGesture(ANY_ARM, "bow"),)
+    assert _words(reading_in((bow, bow), "text", [Reading("text", ((slow,),)), both], MEANT)) == [
+        ["bow (0.62 times as fast)"],
+        ["bow (1.6 times as fast)"],
+    ]
 
 
 def test_what_is_denied_stays_so_and_all_is_where_nothing_is_asked_for() -> None:

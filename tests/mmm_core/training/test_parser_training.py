@@ -11,12 +11,14 @@ import pytest
 import torch
 
 from daemon.cli.program import main
-from mmm_core.corpus.labelled_sentences import LabelledSentence, read_labelled
+from mmm_core.corpus.labelled_sentences import read_labelled
+from mmm_core.corpus.marked_sentences import TaggedSentence, read_commands
 from mmm_core.errors import CheckpointError
 from mmm_core.inference.checkpoint import load_text_encoder, save_tensors
 from mmm_core.inference.own_layers_file import load_parser
-from mmm_core.language.gesture_steps import steps_of
+from mmm_core.language.gesture_steps import plainly, steps_of
 from mmm_core.language.plain_gestures import OUTSIDE, gestures
+from mmm_core.language.tagged_words import words_of
 from mmm_core.model.sentence_parser import likeliest, remembered
 from mmm_core.model.sentence_tagger import word_states
 from mmm_core.training.parser_texts import ParserTexts
@@ -66,11 +68,21 @@ def test_sentences_of_every_kind_are_drawn_and_none_keeps_a_slot() -> None:
     assert sum(len(step) > 1 for one in drawn for step in one.steps) > 100
 
 
-def test_the_gestures_put_into_a_marked_sentence_are_its_steps() -> None:
+def test_gestures_put_into_a_marked_sentence_are_its_steps(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The commands of this sentence are said in the other order than they are done in."""
+    marked = load_marked(["before you [2:clap clap], [1:shrug shrug now]"])
+    monkeypatch.setattr("mmm_core.training.parser_texts.load_marked_sentences", lambda: marked)
+    for share in ("_SHARE_WITHOUT_MARKS", "_SHARE_LOWER", "_SHARE_WITH_SLIPS", "_SHARE_OF_CORPUS"):
+        monkeypatch.setattr(f"mmm_core.training.parser_texts.{share}", 0.0)
     texts = ParserTexts(random.Random(2))
-    drawn: list[LabelledSentence] = [texts.refilled() for _ in range(300)]
-    assert all(one.steps and len(one.steps) <= 5 for one in drawn)
-    assert len({one.steps for one in drawn}) > 200
+    for text, ((first,), (second,)) in (texts.refilled() for _ in range(50)):
+        said = [plainly(one) for one in (second, first)]
+        assert text == "before you {}, {}".format(*said)
+
+
+def load_marked(lines: list[str]) -> list[TaggedSentence]:
+    found = [read_commands(line) for line in lines]
+    return [TaggedSentence(tuple(text[a:b] for a, b in words_of(text)), tuple(tags)) for text, tags, _ in found]
 
 
 def test_a_parser_of_another_text_encoder_is_refused(tmp_path: Path) -> None:
