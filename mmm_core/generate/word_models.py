@@ -1,4 +1,4 @@
-"""What the networks above the text encoder say about sentences: tagger, gesture classifier and parser, with one encoding for all.
+"""Runs the networks above the text encoder, tagger, gesture classifier and parser, on one encoding of a sentence.
 
 All three are given a sentence or its mirror image, whichever names the right first, and what they say is mirrored back, so that a
 mirrored sentence is understood as its mirror image.
@@ -25,7 +25,7 @@ from mmm_core.language.plain_gestures import Meant, gesture_of
 from mmm_core.language.tagged_words import MarkedCommands, words_of
 from mmm_core.language.word_tables import REMEMBERED
 from mmm_core.model.gesture_classifier import GestureClassifier, meant_by, meant_by_parts, meant_by_states
-from mmm_core.model.sentence_parser import SentenceParser, likeliest, log_likelihoods, remembered
+from mmm_core.model.sentence_parser import SentenceParser, likeliest, log_likelihoods, memory_of
 from mmm_core.model.sentence_tagger import SentenceTagger, WordStates, log_probability, pieces_of, word_states
 from mmm_core.model.text import MiniLm
 
@@ -103,7 +103,7 @@ class WordModels:
         return Encoded(states, meant, is_image, tags.numpy(), manners.numpy())
 
     def parse(self, sentence: Encoded) -> Parse:
-        """What the parser says about a sentence."""
+        """The parser's answers and probabilities for a sentence."""
         return Parse(self._parser, sentence)
 
     def classes(self, commands: Sequence[str]) -> dict[str, Meant]:
@@ -135,7 +135,7 @@ class WordModels:
 
 
 class Parse:
-    """What the parser says about one sentence.
+    """Gives the parser's answers for one sentence, and the probability of any answer.
 
     Args:
         parser: the parser.
@@ -144,10 +144,10 @@ class Parse:
 
     def __init__(self, parser: SentenceParser, sentence: Encoded) -> None:
         self._parser, self._is_image = parser, sentence.is_image
-        self._remembered = remembered(parser, sentence.words.states)
+        self._remembered = memory_of(parser, sentence.words.states)
 
     def likeliest(self, n: int) -> list[GestureSteps]:
-        """What the sentence asks for most likely: n answers at most, the likeliest first."""
+        """The likeliest answers, n at most, the likeliest first."""
         found = [steps_of(one.ids) for one in likeliest(self._parser, self._remembered, n)]
         return [self._seen(steps) for steps in found if steps is not None]
 

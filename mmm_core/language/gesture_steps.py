@@ -1,4 +1,4 @@
-"""What a sentence asks for, without its words: gestures with their arms, step by step; and these as a sequence of tokens.
+"""Describes what a sentence asks for as gestures with their arms, step by step, and as the tokens of the sentence parser.
 
 "raise your left hand and nod, then bow" is `((left raise, nod), (bow))`; its tokens are: then, left, raise, with, any, nod, then,
 any, bow, end.

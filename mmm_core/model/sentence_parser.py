@@ -88,7 +88,7 @@ class SentenceParser(nn.Module):
         self.norm, self.out = nn.LayerNorm(config.width), nn.Linear(config.width, len(config.tokens))
 
     def remember(self, states: Tensor, mask: Tensor, dropout: float = 0.0) -> list[Tensor]:
-        """What each layer of the decoder attends to: keys and values (2, B, heads, W, D).
+        """Keys and values (2, B, heads, W, D) to which each layer of the decoder attends.
 
         Args:
             states: (B, W, D) states of word pieces after the encoder's shared layers.
@@ -127,7 +127,7 @@ class Parsed(NamedTuple):
 
 
 @torch.inference_mode()
-def remembered(parser: SentenceParser, states: Tensor) -> list[Tensor]:
+def memory_of(parser: SentenceParser, states: Tensor) -> list[Tensor]:
     """`SentenceParser.remember` of one sentence, given its states (W, D)."""
     return parser.remember(states[None], torch.ones(1, len(states), dtype=torch.bool))
 

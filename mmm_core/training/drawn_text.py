@@ -1,8 +1,13 @@
-"""A text that the gesture classifier learns from, and how often each kind of text is drawn."""
+"""A text that the gesture classifier learns from, how often each kind of text is drawn, and batches of drawn texts."""
 
 from __future__ import annotations
 
-from typing import NamedTuple
+import random
+from collections.abc import Callable, Iterator
+from typing import NamedTuple, Protocol, TypeVar
+
+TOGETHER = 8
+"""Batches that are drawn together, so that each holds texts of similar length."""
 
 
 class Drawn(NamedTuple):
@@ -48,3 +53,21 @@ class Shares(NamedTuple):
 SHARES = Shares(outside=0.1, marked=0.09, manner=0.1, denial=0.08, parts=0.1, joined=0.06, joined_parts=0.4)
 SETTLING_SHARES = Shares(outside=0.09, marked=0.12, manner=0.08, denial=0.07, parts=0.07, joined=0.05, joined_parts=0.3)
 """Shares of the end of a training: more single gestures and more sentences of several commands."""
+
+
+class _HasText(Protocol):
+    @property
+    def text(self) -> str: ...
+
+
+_T = TypeVar("_T", bound=_HasText)
+
+
+def batches_of(draw: Callable[[], _T], size: int, seed: int) -> Iterator[list[_T]]:
+    """Batches of `size` drawn texts without end, each of texts of similar length; `seed` gives their order."""
+    rng = random.Random(seed)
+    while True:
+        drawn = sorted((draw() for _ in range(TOGETHER * size)), key=lambda one: len(one.text))
+        batches = [drawn[at : at + size] for at in range(0, len(drawn), size)]
+        rng.shuffle(batches)
+        yield from batches

@@ -17,12 +17,12 @@ from mmm_core.language.plain_gestures import OUTSIDE, SEVERAL, gestures
 from mmm_core.language.tagged_words import MANNERS
 from mmm_core.model.gesture_classifier import ClassifierConfig, GestureClassifier
 from mmm_core.model.text import MiniLm
-from mmm_core.training.drawn_text import SETTLING_SHARES, Drawn
+from mmm_core.training.drawn_text import SETTLING_SHARES, Drawn, batches_of
 from mmm_core.training.gesture_texts import Texts
 from mmm_core.training.own_layers import Rates, copy_layers, fit
 
-STEPS, BATCH, TOGETHER = 3000, 64, 8
-"""Optimisation steps, texts of a batch, and batches that are drawn together, so that each holds texts of similar length."""
+STEPS, BATCH = 3000, 64
+"""Optimisation steps, and texts of a batch."""
 SETTLING_STEPS = 500
 """Steps after `STEPS` at smaller rates, with the shares of texts of `SETTLING_SHARES`."""
 RATES, SETTLING_RATES = Rates(layers=2e-4, linear=2e-3, warm_up=50), Rates(layers=1e-4, linear=1e-3, warm_up=20)
@@ -51,7 +51,7 @@ def train_classifier(
         classifier = GestureClassifier(ClassifierConfig(tuple(classes), MANNERS[1:]), encoder.config)
         copy_layers(classifier.layers, encoder, classifier.config.n_shared)
         for draws, rates, n_steps in stages:
-            batches = _batches(draws)
+            batches = batches_of(draws, BATCH, SEED)
             fit(classifier, classifier.layers, partial(_next_loss, classifier, encoder, batches), rates, n_steps)
     save_classifier(out, classifier)
     return classifier
@@ -98,12 +98,3 @@ def _pieces_of_parts(encoder: MiniLm, batch: Sequence[Drawn], mask: Tensor) -> T
             if any(within):
                 parts[row, : len(within)] = torch.tensor(within)
     return parts
-
-
-def _batches(draw: Draw) -> Iterator[list[Drawn]]:
-    rng = random.Random(SEED)
-    while True:
-        drawn = sorted((draw() for _ in range(TOGETHER * BATCH)), key=lambda one: len(one.text))
-        batches = [drawn[at : at + BATCH] for at in range(0, len(drawn), BATCH)]
-        rng.shuffle(batches)
-        yield from batches

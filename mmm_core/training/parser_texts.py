@@ -22,7 +22,7 @@ _SHARE_WITHOUT_MARKS, _SHARE_WITH_SLIPS, _SHARE_LOWER = 0.2, 0.2, 0.25
 _SHARE_OF_CORPUS, _SHARE_SIDED = 0.6, 0.3
 """Shares of gestures put into marked sentences in a phrase of the corpus instead of the plain command, and with a hand."""
 _MARKS = (", ", "; ", " then ", ", then ", ". ", " and then ", " after that ", ", and finally ")
-"""What stands between gestures that are joined."""
+"""Marks and words that join two gestures."""
 _HOLDS_MORE = frozenset({AGAIN, FOR_ALL, DENIED})
 """Tags of words that belong to more than one command, or to none: other gestures would not fit beside them."""
 _SHORTEST_GERUND = 6

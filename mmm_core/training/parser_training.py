@@ -1,4 +1,4 @@
-"""Trains the sentence parser on sentences of which the gestures, their order and their arms are known."""
+"""Trains the sentence parser on sentences with known gestures, in their order and with their arms."""
 
 from __future__ import annotations
 
@@ -19,11 +19,12 @@ from mmm_core.language.gesture_steps import mirrored, token_ids, tokens
 from mmm_core.language.mirroring import canonical
 from mmm_core.model.sentence_parser import END_ID, ParserConfig, SentenceParser
 from mmm_core.model.text import MiniLm
+from mmm_core.training.drawn_text import batches_of
 from mmm_core.training.own_layers import Rates, copy_layers, fit
 from mmm_core.training.parser_texts import ParserTexts
 
-STEPS, BATCH, TOGETHER = 3000, 64, 8
-"""Optimisation steps, sentences of a batch, and batches that are drawn together, so that each holds sentences of similar length."""
+STEPS, BATCH = 3000, 64
+"""Optimisation steps, and sentences of a batch."""
 RATES = Rates(layers=2e-4, linear=8e-4, warm_up=100)
 DROPOUT, SMOOTHING = 0.1, 0.03
 SEED = 0
@@ -41,7 +42,7 @@ def train_parser(out: Path, draw: Draw | None = None, *, steps: int = STEPS) -> 
         steps: optimisation steps.
     """
     encoder = load_text_encoder()
-    batches = _batches(draw or ParserTexts(random.Random(SEED)).draw)
+    batches = batches_of(draw or ParserTexts(random.Random(SEED)).draw, BATCH, SEED)
     with torch.random.fork_rng(devices=[]):
         torch.manual_seed(SEED)
         parser = SentenceParser(ParserConfig(tokens()), encoder.config)
@@ -78,12 +79,3 @@ def _canonical(one: LabelledSentence) -> LabelledSentence:
     """A sentence or its mirror image, as it is read."""
     image, is_image = canonical(one.text)
     return LabelledSentence(image, mirrored(one.steps)) if is_image else one
-
-
-def _batches(draw: Draw) -> Iterator[list[LabelledSentence]]:
-    rng = random.Random(SEED)
-    while True:
-        drawn = sorted((draw() for _ in range(TOGETHER * BATCH)), key=lambda one: len(one.text))
-        batches = [drawn[at : at + BATCH] for at in range(0, len(drawn), BATCH)]
-        rng.shuffle(batches)
-        yield from batches

@@ -84,7 +84,7 @@ class BoundedPoses:
         return cls(way_rad, on_spline(way_rad, places.segment, places.u), last, last, share, group, most)
 
     def and_also(self, more: Sequence[BoundedPoses]) -> BoundedPoses:
-        """These poses of a path, then more poses."""
+        """A copy with further poses at its end."""
         if not more:
             return self
         every = (self, *more)

@@ -1,4 +1,4 @@
-"""What a sentence asks for as tokens, and the arms that words name."""
+"""Steps of gestures as tokens of the parser, and the arms that words name."""
 
 from __future__ import annotations
 

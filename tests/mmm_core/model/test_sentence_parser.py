@@ -14,7 +14,7 @@ from mmm_core.model.sentence_parser import (
     SentenceParser,
     likeliest,
     log_likelihoods,
-    remembered,
+    memory_of,
 )
 from mmm_core.model.text import MiniLmConfig
 
@@ -32,7 +32,7 @@ def parser() -> SentenceParser:
 
 @pytest.fixture(scope="module")
 def sentence(parser: SentenceParser) -> list[torch.Tensor]:
-    return remembered(parser, torch.randn(7, TEXT.width))
+    return memory_of(parser, torch.randn(7, TEXT.width))
 
 
 def test_the_probabilities_of_all_answers_add_up_to_one(parser: SentenceParser, sentence: list[torch.Tensor]) -> None:

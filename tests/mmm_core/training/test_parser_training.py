@@ -19,7 +19,7 @@ from mmm_core.inference.own_layers_file import load_parser
 from mmm_core.language.gesture_steps import plainly, steps_of
 from mmm_core.language.plain_gestures import OUTSIDE, gestures
 from mmm_core.language.tagged_words import words_of
-from mmm_core.model.sentence_parser import likeliest, remembered
+from mmm_core.model.sentence_parser import likeliest, memory_of
 from mmm_core.model.sentence_tagger import word_states
 from mmm_core.training.parser_texts import ParserTexts
 from mmm_core.training.parser_training import Draw, train_parser
@@ -48,7 +48,7 @@ def test_it_learns_the_sentences_it_is_given_and_is_read_back(tmp_path: Path, mo
     for parser in (trained, load_parser(path)):
         for one in GIVEN:
             (states,) = word_states(encoder, parser.config.n_shared, [one.text.split()])
-            assert steps_of(likeliest(parser, remembered(parser, states.states), 2)[0].ids) == one.steps
+            assert steps_of(likeliest(parser, memory_of(parser, states.states), 2)[0].ids) == one.steps
     assert all(not p.requires_grad for p in trained.parameters())
 
 
