@@ -38,6 +38,23 @@ class ParserConfig:
     longest: int = 26
 
 
+class Earlier:
+    """Keys and values of the tokens before, which a layer of the decoder keeps from step to step of a search."""
+
+    def __init__(self) -> None:
+        self._pairs: Tensor | None = None
+
+    def with_next(self, pairs: Tensor) -> Tensor:
+        """(2, B, heads, T, D) with those of (2, B, heads, 1, D) added."""
+        self._pairs = pairs if self._pairs is None else torch.cat((self._pairs, pairs), 3)
+        return self._pairs
+
+    def keep(self, sequences: Tensor) -> None:
+        """Keep the sequences with these numbers, in this order."""
+        if self._pairs is not None:
+            self._pairs = self._pairs[:, sequences]
+
+
 class DecoderLayer(nn.Module):
     """Pre-norm layer of a causal decoder: attention to the tokens before, to what is remembered, and a feed-forward network."""
 
@@ -52,10 +69,16 @@ class DecoderLayer(nn.Module):
         )  # fmt: skip
         self.mlp_in, self.mlp_out = nn.Linear(width, 4 * width), nn.Linear(4 * width, width)
 
-    def forward(self, x: Tensor, remembered: Tensor, mask: Tensor, dropout: float = 0.0) -> Tensor:
-        """(B, T, width), with (2, B, heads, W, D) from `remember` and its (B, 1, 1, W) bool mask -> (B, T, width)."""
-        q, k, v = self._heads(self.qkv(self.norms[0](x)), 3)
-        attended = F.scaled_dot_product_attention(q, k, v, is_causal=True)
+    def forward(
+        self, x: Tensor, remembered: Tensor, mask: Tensor | None, dropout: float = 0.0, earlier: Earlier | None = None
+    ) -> Tensor:
+        """(B, T, width), with (2, B, heads, W, D) from `remember` and its (B, 1, 1, W) bool mask, if any -> (B, T, width).
+
+        With what is kept of earlier tokens, x is (B, 1, width) of the next one.
+        """
+        q, *pairs = self._heads(self.qkv(self.norms[0](x)), 3)
+        k, v = pairs if earlier is None else earlier.with_next(torch.stack(pairs))
+        attended = F.scaled_dot_product_attention(q, k, v, is_causal=earlier is None)
         x = x + F.dropout(self.attention_out(_joined(attended)), dropout, self.training)
         (q,) = self._heads(self.query(self.norms[1](x)), 1)
         attended = F.scaled_dot_product_attention(q, remembered[0], remembered[1], attn_mask=mask)
@@ -115,6 +138,20 @@ class SentenceParser(nn.Module):
             x = layer(x, pairs, mask[:, None, None, :], dropout)
         return self.out(self.norm(x))
 
+    def next_scores(self, remembered: Sequence[Tensor], id_: Tensor, n_before: int, kept: Sequence[Earlier]) -> Tensor:
+        """Scores (B, tokens) of the token after the last of B sequences, whose earlier tokens are kept.
+
+        Args:
+            remembered: from `remember`, without words that are none.
+            id_: (B,) the last token of each.
+            n_before: tokens before it.
+            kept: what each layer keeps of them; the last token is added.
+        """
+        x = (self.token(id_) + self.position[n_before])[:, None]
+        for layer, pairs, earlier in zip(self.decoder, remembered, kept, strict=True):
+            x = layer(x, pairs, None, earlier=earlier)
+        return self.out(self.norm(x[:, 0]))
+
 
 START_ID, END_ID = 0, 1
 
@@ -148,24 +185,27 @@ def log_likelihoods(
 @torch.inference_mode()
 def likeliest(parser: SentenceParser, remembered: Sequence[Tensor], n: int) -> list[Parsed]:
     """About the n likeliest sequences for one sentence, by beam search, the likeliest first."""
-    beams, done = [Parsed((), 0.0)], list[Parsed]()
-    for _ in range(parser.config.longest - 1):
-        ids = torch.tensor([[START_ID, *one.ids] for one in beams])
-        log_p = _next_log_p(parser, remembered, ids)[:, -1]
-        scores = log_p + torch.tensor([[one.log_probability] for one in beams])
-        best = scores.flatten().topk(min(2 * n, scores.numel()))
-        grown: list[Parsed] = []
-        for score, at in zip(best.values.tolist(), best.indices.tolist(), strict=True):
+    beams, done = [Parsed((START_ID,), 0.0)], list[Parsed]()
+    kept = [Earlier() for _ in parser.decoder]
+    for n_before in range(parser.config.longest - 1):
+        pairs = [one.expand(-1, len(beams), -1, -1, -1) for one in remembered]
+        scores = parser.next_scores(pairs, torch.tensor([one.ids[-1] for one in beams]), n_before, kept)
+        log_p = F.log_softmax(scores.float(), -1) + torch.tensor([[one.log_probability] for one in beams])
+        best = log_p.flatten().topk(min(2 * n, log_p.numel()))
+        grown: list[tuple[int, Parsed]] = []
+        for log_probability, at in zip(best.values.tolist(), best.indices.tolist(), strict=True):
             beam, token = divmod(at, log_p.shape[1])
-            one = Parsed((*beams[beam].ids, token), score)
+            ids = beams[beam].ids
             if token == END_ID:
-                done.append(one._replace(ids=one.ids[:-1]))
+                done.append(Parsed(ids[1:], log_probability))
             else:
-                grown.append(one)
-        beams = grown[:n]
+                grown.append((beam, Parsed((*ids, token), log_probability)))
+        beams = [one for _, one in grown[:n]]
         done.sort(key=lambda one: -one.log_probability)
         if len(done) >= n and done[n - 1].log_probability >= beams[0].log_probability:
             break
+        for earlier in kept:
+            earlier.keep(torch.tensor([beam for beam, _ in grown[:n]]))
     return done[:n]
 
 
