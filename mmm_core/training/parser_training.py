@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import random
-from collections.abc import Callable, Iterator, Sequence
-from functools import partial
+from collections.abc import Callable, Sequence
+from itertools import islice
 from pathlib import Path
 
 import torch
@@ -19,44 +19,60 @@ from mmm_core.language.gesture_steps import mirrored, token_ids, tokens
 from mmm_core.language.mirroring import canonical
 from mmm_core.model.sentence_parser import END_ID, ParserConfig, SentenceParser
 from mmm_core.model.text import MiniLm
-from mmm_core.training.drawn_text import batches_of
-from mmm_core.training.own_layers import Rates, copy_layers, fit
+from mmm_core.training.drawn_text import TOGETHER, batches_of
+from mmm_core.training.own_layers import copy_layers
 from mmm_core.training.parser_texts import ParserTexts
+from mmm_core.training.run import Run, Schedule, train
 
-STEPS, BATCH = 3000, 64
+STEPS, BATCH = 7000, 64
 """Optimisation steps, and sentences of a batch."""
-RATES = Rates(layers=2e-4, linear=8e-4, warm_up=100)
+RATE, RATE_OF_COPIED = 8e-4, 2e-4
+"""Highest learning rates: of new layers, and of the copies of the encoder's layers."""
 DROPOUT, SMOOTHING = 0.1, 0.03
-SEED = 0
+SEED, SAVE_EVERY = 0, 200
 _NOT_GIVEN = -100
 
 Draw = Callable[[], LabelledSentence]
 
 
-def train_parser(out: Path, draw: Draw | None = None, *, steps: int = STEPS) -> SentenceParser:
-    """Train a parser and write it; equal arguments give equal weights on one machine.
+def train_parser(
+    out: Path, folder: Path, draw_with: Callable[[random.Random], Draw] | None = None, *, steps: int = STEPS
+) -> SentenceParser:
+    """Train a parser and write it; equal arguments give equal weights on one machine, however often the run was interrupted.
 
     Args:
         out: file of the parser.
-        draw: draws a sentence with what it asks for; all kinds of `ParserTexts` when None.
+        folder: where the run keeps its state, from which it goes on.
+        draw_with: what draws sentences with what they ask for from random numbers; all kinds of `ParserTexts` when None.
         steps: optimisation steps.
     """
     encoder = load_text_encoder()
-    batches = batches_of(draw or ParserTexts(random.Random(SEED)).draw, BATCH, SEED)
+    rng = random.Random()
+    draw = draw_with(rng) if draw_with is not None else ParserTexts(rng).draw
     with torch.random.fork_rng(devices=[]):
         torch.manual_seed(SEED)
         parser = SentenceParser(ParserConfig(tokens()), encoder.config)
         copy_layers(parser.layers, encoder, parser.config.n_shared)
-        fit(parser, parser.layers, partial(_next_loss, parser, encoder, batches), RATES, steps)
-    save_parser(out, parser)
+        drawn: dict[int, list[list[LabelledSentence]]] = {}
+
+        def losses(step: int, _generator: torch.Generator) -> dict[str, Tensor]:
+            first = step - step % TOGETHER
+            if first not in drawn:
+                drawn.clear()
+                drawn[first] = _batches(draw, rng, first)
+            return {"loss": _loss(parser, encoder, [_canonical(one) for one in drawn[first][step - first]])}
+
+        schedule = Schedule(steps, RATE, final_share=0.02, weight_decay=0.02, save_every=SAVE_EVERY, seed=SEED)
+        run = Run(folder, precision="bf16" if can_pack_bf16() else "fp32")
+        train(parser, losses, schedule, run, "parser", slower={"layers.": RATE_OF_COPIED / RATE})
+    save_parser(out, parser.requires_grad_(False))
     return parser
 
 
-def _next_loss(
-    parser: SentenceParser, encoder: MiniLm, batches: Iterator[list[LabelledSentence]], _step: int
-) -> Tensor:
-    with torch.autocast("cpu", torch.bfloat16, enabled=can_pack_bf16()):
-        return _loss(parser, encoder, [_canonical(one) for one in next(batches)])
+def _batches(draw: Draw, rng: random.Random, first: int) -> list[list[LabelledSentence]]:
+    """The batches of `TOGETHER` steps, which depend on the number of the first of them alone."""
+    rng.seed(SEED * 1_000_003 + first)
+    return list(islice(batches_of(draw, BATCH, first), TOGETHER))
 
 
 def _loss(parser: SentenceParser, encoder: MiniLm, batch: Sequence[LabelledSentence]) -> Tensor:

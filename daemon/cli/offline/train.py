@@ -125,7 +125,7 @@ def train(
     if stage == "average":
         return _average(models, out)
     if stage in ("tagger", "gestures", "parser", "choice", "manner"):
-        return _reader_part(stage, out)
+        return _reader_part(stage, out, run_dir or Path("runs") / stage)
     config = config or ("ablation" if stage == "ablation" else "compact")
     recipe = read_recipe(config, seed)
     if stage == "tokenizer" and recipe.start:
@@ -182,7 +182,9 @@ def _average(models: Sequence[Path], out: Path | None) -> int:
     return 0
 
 
-def _reader_part(stage: Literal["tagger", "gestures", "parser", "choice", "manner"], out: Path | None) -> int:
+def _reader_part(
+    stage: Literal["tagger", "gestures", "parser", "choice", "manner"], out: Path | None, folder: Path
+) -> int:
     """Train and write a part of the reader: one of its networks, or weights of readings or of words of manner."""
     from mmm_core.training.choice_training import train_choice
     from mmm_core.training.gesture_training import train_classifier
@@ -197,7 +199,7 @@ def _reader_part(stage: Literal["tagger", "gestures", "parser", "choice", "manne
     elif stage == "gestures":
         train_classifier(out)
     elif stage == "parser":
-        train_parser(out)
+        train_parser(out, folder)
     elif stage == "manner":
         n_texts, n_pieces = train_manner(out)
         n, n_manners, n_found = train_evidence(out.with_name("manner_choice.txt"))

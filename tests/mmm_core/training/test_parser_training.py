@@ -11,7 +11,7 @@ import pytest
 import torch
 
 from daemon.cli.program import main
-from mmm_core.corpus.labelled_sentences import read_labelled
+from mmm_core.corpus.labelled_sentences import LabelledSentence, read_labelled
 from mmm_core.corpus.marked_sentences import TaggedSentence, read_commands
 from mmm_core.errors import CheckpointError
 from mmm_core.inference.checkpoint import load_text_encoder, save_tensors
@@ -35,16 +35,15 @@ GIVEN = [
 ]
 
 
-def _draw() -> Draw:
-    endless = itertools.cycle(GIVEN)
-    return lambda: next(endless)
+def _draw_with(rng: random.Random) -> Draw:
+    return lambda: rng.choice(GIVEN)
 
 
 @pytest.mark.long
 def test_it_learns_the_sentences_it_is_given_and_is_read_back(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("mmm_core.training.parser_training.BATCH", 8)
     path = tmp_path / "parser.safetensors"
-    trained, encoder = train_parser(path, _draw(), steps=120), load_text_encoder()
+    trained, encoder = train_parser(path, tmp_path / "run", _draw_with, steps=160), load_text_encoder()
     for parser in (trained, load_parser(path)):
         for one in GIVEN:
             (states,) = word_states(encoder, parser.config.n_shared, [one.text.split()])
@@ -52,10 +51,27 @@ def test_it_learns_the_sentences_it_is_given_and_is_read_back(tmp_path: Path, mo
     assert all(not p.requires_grad for p in trained.parameters())
 
 
-def test_equal_arguments_give_equal_weights(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_interrupted_run_gives_the_weights_of_one_that_was_not(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The interrupt comes at the third step."""
     monkeypatch.setattr("mmm_core.training.parser_training.BATCH", 4)
-    a, b = (train_parser(tmp_path / name, _draw(), steps=2) for name in ("a", "b"))
-    assert all(torch.equal(x, y) for x, y in zip(a.state_dict().values(), b.state_dict().values(), strict=True))
+    monkeypatch.setattr("mmm_core.training.parser_training.SAVE_EVERY", 1)
+    whole = train_parser(tmp_path / "whole", tmp_path / "run", _draw_with, steps=4)
+
+    n_drawn = itertools.count()
+
+    def interrupted(one: LabelledSentence) -> LabelledSentence:
+        if next(n_drawn) == 2 * 4:
+            raise KeyboardInterrupt
+        return one
+
+    with monkeypatch.context() as patched:
+        patched.setattr("mmm_core.training.parser_training._canonical", interrupted)
+        with pytest.raises(KeyboardInterrupt):
+            train_parser(tmp_path / "parts", tmp_path / "again", _draw_with, steps=4)
+    parts = train_parser(tmp_path / "parts", tmp_path / "again", _draw_with, steps=4)
+    assert all(torch.equal(x, y) for x, y in zip(whole.state_dict().values(), parts.state_dict().values(), strict=True))
 
 
 def test_sentences_of_every_kind_are_drawn_and_none_keeps_a_slot() -> None:
@@ -75,7 +91,7 @@ def test_gestures_put_into_a_marked_sentence_are_its_steps(monkeypatch: pytest.M
     for share in ("_SHARE_WITHOUT_MARKS", "_SHARE_LOWER", "_SHARE_WITH_SLIPS", "_SHARE_OF_CORPUS"):
         monkeypatch.setattr(f"mmm_core.training.parser_texts.{share}", 0.0)
     texts = ParserTexts(random.Random(2))
-    for text, ((first,), (second,)) in (texts.refilled() for _ in range(50)):
+    for text, ((first,), (second,)), _ in (texts.refilled() for _ in range(50)):
         said = [plainly(one) for one in (second, first)]
         assert text == "before you {}, {}".format(*said)
 
