@@ -17,6 +17,7 @@ from mmm_core.corpus.withheld import is_withheld
 from mmm_core.errors import TrainingDataError
 from mmm_core.language.gesture_steps import ANY_ARM, IN_TURN, ArmGesture, GestureSteps, with_own_arm
 from mmm_core.language.plain_gestures import OUTSIDE, gestures
+from mmm_core.language.tagged_words import MANNERS, NO_MANNER
 
 LABELLED_SENTENCES = Path(__file__).parent / "prompts" / "labelled_sentences"
 _DENIED = re.compile(r" *\| *not ")
@@ -24,13 +25,21 @@ _COMMAND = re.compile(
     r"(?:(?P<arm>left|right|both|turns) )?(?P<gesture>.+?)(?P<manner>(?: (?:x\d+|\d+(?:\.\d+)?s|slow|fast|small|large))*)"
 )
 _ARMS = {"": ANY_ARM, "turns": IN_TURN}
+_MANNERS = frozenset(MANNERS) - {NO_MANNER}
 
 
 class LabelledSentence(NamedTuple):
-    """A sentence and what it asks for; no steps where it asks for nothing."""
+    """A sentence and what it asks for.
+
+    Attributes:
+        text: the sentence.
+        steps: gestures, step by step; none where it asks for nothing.
+        manners: tempos and sizes that it names for any of them.
+    """
 
     text: str
     steps: GestureSteps
+    manners: frozenset[str] = frozenset()
 
 
 def load_labelled_sentences(folder: Path = LABELLED_SENTENCES) -> list[LabelledSentence]:
@@ -44,7 +53,7 @@ def load_labelled_sentences(folder: Path = LABELLED_SENTENCES) -> list[LabelledS
 
 
 def read_labelled(line: str, path: Path = LABELLED_SENTENCES) -> LabelledSentence:
-    """A line as a sentence with what it asks for; numbers, manner and what is denied are read over.
+    """A line as a sentence with what it asks for; numbers and what is denied are read over.
 
     >>> read_labelled("before you clap, left hand up => left raise; clap x2").steps
     ((ArmGesture(arm='left', gesture='raise'),), (ArmGesture(arm='any', gesture='clap'),))
@@ -54,15 +63,18 @@ def read_labelled(line: str, path: Path = LABELLED_SENTENCES) -> LabelledSentenc
         raise TrainingDataError(path, "", repr(line), "a sentence, => and its steps")
     asked, *_denied = _DENIED.split(f" {label.strip()}")
     of_steps = asked.split(";") if asked.strip() else []
-    steps = [[_command(said, line, path) for said in step.split("+")] for step in of_steps]
-    return LabelledSentence(text.strip(), tuple(map(tuple, steps)))
+    found = [[_command(said, line, path) for said in step.split("+")] for step in of_steps]
+    steps = tuple(tuple(gesture for gesture, _ in step) for step in found)
+    manners = frozenset(word for step in found for _, manner in step for word in manner.split())
+    return LabelledSentence(text.strip(), steps, manners & _MANNERS)
 
 
-def _command(said: str, line: str, path: Path) -> ArmGesture:
+def _command(said: str, line: str, path: Path) -> tuple[ArmGesture, str]:
+    """A gesture with its arm, and the words of its number, time and manner."""
     found = _COMMAND.fullmatch(said.strip())
     if found is None or (found["gesture"] not in gestures() and found["gesture"] != OUTSIDE):
         raise TrainingDataError(
             path, repr(line), repr(said.strip()), "an arm, a gesture of plain_gestures.txt, its manner"
         )
     arm = found["arm"] or ""
-    return with_own_arm(ArmGesture(_ARMS.get(arm, arm), found["gesture"]))
+    return with_own_arm(ArmGesture(_ARMS.get(arm, arm), found["gesture"])), found["manner"]

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from torch import Tensor
 
 from mmm_core.corpus.heldout import read_sentences
+from mmm_core.corpus.labelled_sentences import load_labelled_sentences
 from mmm_core.corpus.marked_sentences import MANNER_SENTENCES, lines_of, marked_manners
 from mmm_core.corpus.written_phrases import load_written_phrases
 from mmm_core.errors import TrainingDataError
@@ -132,6 +133,7 @@ def training_texts(seed: int = 0) -> Texts:
         if manner not in ASKED or not words:
             raise TrainingDataError(MANNER_EXPRESSIONS, f"line {number}", line, f"{' | '.join(ASKED)} => an expression")
         texts.append((words, frozenset({manner})))
+    texts += [(one.text, one.manners) for one in load_labelled_sentences()]
     plain = [phrase for some in load_written_phrases().values() for phrase in some]
     chosen = np.random.default_rng(seed).permutation(len(plain))[:_N_PLAIN]
     return texts + [(plain[i], frozenset()) for i in chosen]

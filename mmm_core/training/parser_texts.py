@@ -40,9 +40,9 @@ class Shares(NamedTuple):
         outside: texts that are no gesture.
     """
 
-    labelled: float = 0.4
-    refilled: float = 0.2
-    denial: float = 0.07
+    labelled: float = 0.5
+    refilled: float = 0.15
+    denial: float = 0.05
     joined: float = 0.07
     outside: float = 0.05
 

@@ -32,7 +32,7 @@ def eval(
     robots: tuple[str, ...] = ("reference", "op3"),
     probes: Literal["development", "test"] = "development",
     words: Literal[
-        "dev", "dev_2", "seen", "test", "test_1", "test_2", "test_3", "test_4", "phrases_dev", "phrases_test"
+        "dev", "dev_2", "seen", "test", "test_1", "test_2", "test_3", "test_4", "test_5", "phrases_dev", "phrases_test"
     ] = "dev",
     executed: int = 1,
     families: tuple[str, ...] = (),
@@ -107,7 +107,7 @@ def eval(
         seeds: motions for each probe, or each family (fidelity).
         robots: names or robot files, each of which shows the probes' motions as well.
         probes: which set of probes: models are chosen by one, and reported on the other.
-        words: which set of sentences; `seen` are those that the rules were written by, `test_1` to `test_4` are older tests,
+        words: which set of sentences; `seen` are those that the rules were written by, `test_1` to `test_5` are older tests,
             `phrases_` ask for one gesture each, in other words than the corpus (docs/language.md).
         executed: seeds of each probe that the simulated robots execute too; 0: none.
         families: families of the corpus (fidelity); all when none is given.

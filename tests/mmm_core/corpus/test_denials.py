@@ -38,7 +38,7 @@ def test_no_slot_is_left_and_no_sentence_is_one_that_measures() -> None:
     assert not [said for said in drawn if "{v}" in said or "{g}" in said or "{w}" in said or "{h}" in said]
     measured = {
         sentence.text.lower()
-        for name in ("test", "test_1", "test_2", "test_3", "test_4")
+        for name in ("test", "test_1", "test_2", "test_3", "test_4", "test_5")
         for sentence in read_sentences(f"words_{name}")
     }
     assert not measured & {said.lower() for said in drawn}
