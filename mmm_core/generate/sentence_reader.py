@@ -38,7 +38,7 @@ from mmm_core.language.positions import in_said_order
 from mmm_core.language.reading import read
 from mmm_core.language.said_at_once import said_at_once, without_repeats
 from mmm_core.language.spelling import mended
-from mmm_core.language.sure_reading import is_sure, leaves_words_out, needs_tags, unknown_commands
+from mmm_core.language.sure_reading import is_sure, needs_networks, needs_tags, unknown_commands
 from mmm_core.language.tagged_manner import manner_phrases, with_left_manner, with_likely_manner, with_plain_manner
 from mmm_core.language.tagged_reading import can_be_read, reading_of, without_splits
 from mmm_core.language.tagged_words import MANNERS, MarkedCommands, likely_tags, marked_commands, words_of
@@ -109,7 +109,7 @@ class SentenceReader:
 
     def _words_to_understand(self, by_rules: Reading, text: str) -> str:
         """The words of a text that the networks read; empty where the rules alone do."""
-        if by_rules.text != text or not (needs_tags(by_rules) or leaves_words_out(by_rules)):
+        if by_rules.text != text or not needs_networks(by_rules):
             return ""
         words = _in_order(strip_emoji(text))
         return words if 0 < len(words_of(words)) <= MAX_WORD_PIECES else ""

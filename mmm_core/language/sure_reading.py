@@ -31,6 +31,18 @@ _COMPARES = re.compile(r"\b(?:as if|as though|like)\b")
 _MOST_LEFT_OUT = 4
 """Words that a sentence has beyond those of its command, at most, without being looked at for words of manner."""
 
+_DIVIDED_WRONGLY = re.compile(
+    r"\b(?:i mean(?:t)?|i said|no|wait|sorry|oops|scratch that|actually|make that|rather|er|erm|um|uh|"  # corrections
+    r"not|never|none|nothing|without|neither|nor|needn't|except|but|instead|stop|skip|forget|cancel|enough|"  # denials
+    r"while|whilst|as you|at the same time|together|both|"  # at once
+    r"other|same|again|once more|opposite|reverse|swap|each|next one|likewise|"  # what was said before
+    r"before|after|prior|having|once|first|last|finish|end|start|begin|until)\b|"  # order
+    r"n't\b|\bleft\b.*\bright\b|\bright\b.*\bleft\b",
+    re.IGNORECASE,
+)
+"""Words beside which rules that seem sure divide one sentence in eight wrongly, without them one in twenty (of 1,857 sentences of
+writers who had not seen the rules)."""
+
 
 def is_sure(reading: Reading) -> bool:
     """Whether the rules divided it rightly in all likelihood.
@@ -50,22 +62,36 @@ def is_sure(reading: Reading) -> bool:
 
 
 def needs_tags(reading: Reading) -> bool:
-    """Whether the rules are not sure, or the sentence has words that the corpus does not know and that may say a manner.
+    """Whether the rules are not sure, or the sentence has words that they often divide wrongly or that may say a manner.
 
-    Such words are in a command that is no phrase of the corpus, or in a comparison that was left out as not needed.
+    Words that may say a manner are in a command that is no phrase of the corpus, or in a comparison that was left out.
     """
     commands = [_BESIDE.sub("", command.text.lower()) for step in reading.steps for command in step]
     if len(commands) == 1 and _IS_CAPTION.match(commands[0]):
         return False
     known = all(key_of(command) is None or is_known_phrase(command) for command in commands)
+    if _may_be_divided_wrongly(reading):
+        return True
     compares = _COMPARES.search(reading.text) is not None and not any(map(_COMPARES.search, commands))
     return compares or not (known and is_sure(reading))
+
+
+def _may_be_divided_wrongly(reading: Reading) -> bool:
+    """Whether a sentence, which is no phrase of the corpus, has such words, or things done at once."""
+    if is_known_phrase(reading.text):
+        return False
+    return _DIVIDED_WRONGLY.search(reading.text) is not None or any(len(step) > 1 for step in reading.steps)
 
 
 def leaves_words_out(reading: Reading) -> bool:
     """Whether a sentence of one command has so many other words that some of them may say its manner."""
     said = [command.text for step in reading.steps for command in step]
     return len(said) == 1 and len(reading.text.split()) - len(said[0].split()) > _MOST_LEFT_OUT
+
+
+def needs_networks(reading: Reading) -> bool:
+    """Whether a sentence is read with tagger, classifier and parser, not by the rules alone."""
+    return needs_tags(reading) or leaves_words_out(reading)
 
 
 def unknown_commands(reading: Reading) -> list[str]:

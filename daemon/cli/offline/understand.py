@@ -54,13 +54,13 @@ def understand(
 
 
 def _read(text: str) -> Reading:
-    """The reading of a text; the tagger, and PyTorch with it, is loaded where a command is no known phrase."""
+    """The reading of a text; the networks, and PyTorch with them, are loaded where the rules do not read it alone."""
     from mmm_core.language.hard_phrases import without_hard_phrases
     from mmm_core.language.reading import read
-    from mmm_core.language.sure_reading import needs_tags
+    from mmm_core.language.sure_reading import needs_networks
 
     by_rules = read(text)
-    return _reader().read(text) if needs_tags(by_rules) else without_hard_phrases(text, by_rules)
+    return _reader().read(text) if needs_networks(by_rules) else without_hard_phrases(text, by_rules)
 
 
 @cache
