@@ -25,10 +25,11 @@ Precision = Literal["fp32", "bf16", "int8"]
 MOST_CANDIDATES = 64
 """Motions that one generation makes at most, to keep the likeliest."""
 _CALIBRATION_TEXTS = (
-    ("wave with your right hand", 9.6), ("raise both arms, then clap twice", 3.2), ("bow deeply", 2.0),
-    ("turn your head to the left", 1.2), ("play the guitar", 3.2), ("point up with your left hand", 1.6),
+    ("wave with your right hand", 9.6), ("exactly: raise both arms; clap twice", 3.2),
+    ("exactly: bow politely (1.4 times as large)", 2.0), ("turn your head to the left", 1.2),
+    ("play the guitar", 3.2), ("point up with your left hand", 1.6),
 )  # fmt: skip
-"""Texts and seconds whose generation shows eight-bit layers the range of their inputs."""
+"""Texts and seconds whose generation shows eight-bit layers the range of their inputs, the same however sentences are read."""
 
 
 class Engine(MotionModel):

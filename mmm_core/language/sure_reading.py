@@ -34,7 +34,7 @@ _MOST_LEFT_OUT = 4
 _DIVIDED_WRONGLY = re.compile(
     r"\b(?:i mean(?:t)?|i said|no|wait|sorry|oops|scratch that|actually|make that|rather|er|erm|um|uh|"  # corrections
     r"not|never|none|nothing|without|neither|nor|needn't|except|but|instead|stop|skip|forget|cancel|enough|"  # denials
-    r"while|whilst|as you|at the same time|together|both|"  # at once
+    r"while|whilst|as you|at the same time|together|"  # at once
     r"other|same|again|once more|opposite|reverse|swap|each|next one|likewise|"  # what was said before
     r"before|after|prior|having|once|first|last|finish|end|start|begin|until)\b|"  # order
     r"n't\b|\bleft\b.*\bright\b|\bright\b.*\bleft\b",
