@@ -34,7 +34,7 @@ class LabelledSentence(NamedTuple):
     Attributes:
         text: the sentence.
         steps: gestures, step by step; none where it asks for nothing.
-        manners: tempos and sizes that it names for any of them.
+        manners: tempos and sizes that a writer's label has for any of them; none of a sentence that was put together.
     """
 
     text: str
@@ -53,7 +53,7 @@ def load_labelled_sentences(folder: Path = LABELLED_SENTENCES) -> list[LabelledS
 
 
 def read_labelled(line: str, path: Path = LABELLED_SENTENCES) -> LabelledSentence:
-    """A line as a sentence with what it asks for; numbers and what is denied are read over.
+    """A line as a sentence with what it asks for; numbers and what is denied are skipped.
 
     >>> read_labelled("before you clap, left hand up => left raise; clap x2").steps
     ((ArmGesture(arm='left', gesture='raise'),), (ArmGesture(arm='any', gesture='clap'),))

@@ -1,4 +1,4 @@
-"""Reads sentences: by rules, and where these do not know every word, with the help of networks above the text encoder.
+"""Reads sentences: by rules, and where these may be wrong, with the help of networks above the text encoder.
 
 A tagger divides the sentence and finds its manner, a classifier tells which gestures its words mean, and a parser which gestures
 the whole sentence asks for. Of all readings that come of it the likeliest is taken (`mmm_core.language.candidates`).
@@ -103,7 +103,7 @@ class SentenceReader:
         return states.meant.manners, _of_tags(states)
 
     def ways_to_read(self, text: str) -> Ways | None:
-        """The ways to read a text among which one is chosen; None where the rules are sure or no way is known."""
+        """The ways to read a text among which one is chosen; None where the rules alone read it or no way is known."""
         words = self._words_to_understand(read(text), text)
         return self._ways(text, words, self._models.encode(words)) if words else None
 

@@ -26,7 +26,7 @@ CAPTION_SUBJECT = (
 """Pattern of the subject of a caption of one motion, such as the corpus has: "a man is shooting out their right hand"."""
 _SUBJECT = re.compile(rf"^\s*{CAPTION_SUBJECT} (?=(?:is )?\w+(?:s|ing)\b)")
 """The subject before a verb: "this person shifts from foot to foot"."""
-SAYS_NOTHING = frozenset(
+_SAYS_NOTHING = frozenset(
     (
         "a an the your my his her its their both one of left right please robot now do does doing perform make give me us show "
         "some with using hand hands arm arms time times"
@@ -48,7 +48,7 @@ def key_of(text: str) -> int | None:
 def significant_words(text: str) -> list[str]:
     """The stems of the words of a text that say which gesture is meant."""
     said = _SUBJECT.sub("", text.lower())
-    return [stem(word) for word in _WORD.findall(said) if word not in SAYS_NOTHING and not word.isdigit()]
+    return [stem(word) for word in _WORD.findall(said) if word not in _SAYS_NOTHING and not word.isdigit()]
 
 
 def is_known_phrase(text: str) -> bool:

@@ -21,7 +21,6 @@ from mmm_core.language.denial import Denial, without_denial
 from mmm_core.language.ellipsis import completed, with_sides
 from mmm_core.language.limbs import SOME_ARM, limbs_of
 from mmm_core.language.manner import Manner, manner_of
-from mmm_core.language.misheard_objects import with_meant_object
 from mmm_core.language.one_arm import of_one_arm
 from mmm_core.language.one_gesture import as_said, held_together
 from mmm_core.language.one_thing import of_one_thing
@@ -199,7 +198,7 @@ def command_of(clause: str) -> PlainCommand:
     words = rewritten(everyday(bare) or bare)
     if manner.plain and words != bare:
         words, manner = manner_of(words)
-    words = with_meant_object(as_said(words))
+    words = as_said(words)
     return PlainCommand(words, manner, limbs_of(words))
 
 

@@ -1,4 +1,4 @@
-"""Whether the rules read a sentence surely: what a tagger and a classifier have to be asked about."""
+"""Whether a sentence is read by the rules alone, and which of their readings and commands are sure."""
 
 from __future__ import annotations
 
@@ -32,16 +32,15 @@ _MOST_LEFT_OUT = 4
 """Words that a sentence has beyond those of its command, at most, without being looked at for words of manner."""
 
 _DIVIDED_WRONGLY = re.compile(
-    r"\b(?:i mean(?:t)?|i said|no|wait|sorry|oops|scratch that|actually|make that|rather|er|erm|um|uh|"  # corrections
-    r"not|never|none|nothing|without|neither|nor|needn't|except|but|instead|stop|skip|forget|cancel|enough|"  # denials
-    r"while|whilst|as you|at the same time|together|"  # at once
-    r"other|same|again|once more|opposite|reverse|swap|each|next one|likewise|"  # what was said before
-    r"before|after|prior|having|once|first|last|finish|end|start|begin|until)\b|"  # order
-    r"n't\b|\bleft\b.*\bright\b|\bright\b.*\bleft\b",
-    re.IGNORECASE,
+    r"\b(?:i mean(?:t)?|i said|wait|sorry|oops|scratch that|actually|make that|rather|er|erm|um|uh)\b|[,.;:-] ?no\b|"
+    r"\b(?:while|whilst|as you|at the same time|together|before|after|prior|having|until)\b"
 )
-"""Words beside which rules that seem sure divide one sentence in eight wrongly, without them one in twenty (of 1,857 sentences of
-writers who had not seen the rules)."""
+"""Words of correction, of doing things at once and of order.
+
+Writers who had not seen the rules wrote 1,453 sentences that these read surely. 485 had such a word or things done at once: 42
+of these were divided wrongly by the rules alone and rightly with the networks, 5 the other way round. Words of repetition, of both
+sides and of denial gained nothing.
+"""
 
 
 def is_sure(reading: Reading) -> bool:
@@ -69,18 +68,21 @@ def needs_tags(reading: Reading) -> bool:
     commands = [_BESIDE.sub("", command.text.lower()) for step in reading.steps for command in step]
     if len(commands) == 1 and _IS_CAPTION.match(commands[0]):
         return False
-    known = all(key_of(command) is None or is_known_phrase(command) for command in commands)
     if _may_be_divided_wrongly(reading):
         return True
+    known = all(key_of(command) is None or is_known_phrase(command) for command in commands)
     compares = _COMPARES.search(reading.text) is not None and not any(map(_COMPARES.search, commands))
     return compares or not (known and is_sure(reading))
 
 
 def _may_be_divided_wrongly(reading: Reading) -> bool:
-    """Whether a sentence, which is no phrase of the corpus, has such words, or things done at once."""
-    if is_known_phrase(reading.text):
+    """Whether a sentence has words of `_DIVIDED_WRONGLY`, or commands at once.
+
+    A phrase of the corpus is not divided wrongly, and no network changes a sentence that asks for nothing.
+    """
+    if not reading.steps or is_known_phrase(reading.text):
         return False
-    return _DIVIDED_WRONGLY.search(reading.text) is not None or any(len(step) > 1 for step in reading.steps)
+    return _DIVIDED_WRONGLY.search(reading.text.lower()) is not None or any(len(step) > 1 for step in reading.steps)
 
 
 def leaves_words_out(reading: Reading) -> bool:

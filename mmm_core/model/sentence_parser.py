@@ -38,7 +38,7 @@ class ParserConfig:
     longest: int = 26
 
 
-class Earlier:
+class KeyValueCache:
     """Keys and values of the tokens before, which a layer of the decoder keeps from step to step of a search."""
 
     def __init__(self) -> None:
@@ -70,15 +70,20 @@ class DecoderLayer(nn.Module):
         self.mlp_in, self.mlp_out = nn.Linear(width, 4 * width), nn.Linear(4 * width, width)
 
     def forward(
-        self, x: Tensor, remembered: Tensor, mask: Tensor | None, dropout: float = 0.0, earlier: Earlier | None = None
+        self,
+        x: Tensor,
+        remembered: Tensor,
+        mask: Tensor | None,
+        dropout: float = 0.0,
+        cache: KeyValueCache | None = None,
     ) -> Tensor:
-        """(B, T, width), with (2, B, heads, W, D) from `remember` and its (B, 1, 1, W) bool mask, if any -> (B, T, width).
+        """(B, T, width), with (2, B, heads, W, D) from `remember` and its (B, 1, 1, W) bool mask -> (B, T, width).
 
-        With what is kept of earlier tokens, x is (B, 1, width) of the next one.
+        Without a mask all words are attended to. With a cache of the earlier tokens, x is (B, 1, width) of the next one.
         """
         q, *pairs = self._heads(self.qkv(self.norms[0](x)), 3)
-        k, v = pairs if earlier is None else earlier.with_next(torch.stack(pairs))
-        attended = F.scaled_dot_product_attention(q, k, v, is_causal=earlier is None)
+        k, v = pairs if cache is None else cache.with_next(torch.stack(pairs))
+        attended = F.scaled_dot_product_attention(q, k, v, is_causal=cache is None)
         x = x + F.dropout(self.attention_out(_joined(attended)), dropout, self.training)
         (q,) = self._heads(self.query(self.norms[1](x)), 1)
         attended = F.scaled_dot_product_attention(q, remembered[0], remembered[1], attn_mask=mask)
@@ -138,18 +143,20 @@ class SentenceParser(nn.Module):
             x = layer(x, pairs, mask[:, None, None, :], dropout)
         return self.out(self.norm(x))
 
-    def next_scores(self, remembered: Sequence[Tensor], id_: Tensor, n_before: int, kept: Sequence[Earlier]) -> Tensor:
-        """Scores (B, tokens) of the token after the last of B sequences, whose earlier tokens are kept.
+    def next_scores(
+        self, remembered: Sequence[Tensor], last_ids: Tensor, n_before: int, caches: Sequence[KeyValueCache]
+    ) -> Tensor:
+        """Scores (B, tokens) of the token after the last of B sequences, whose earlier tokens are in the caches.
 
         Args:
-            remembered: from `remember`, without words that are none.
-            id_: (B,) the last token of each.
-            n_before: tokens before it.
-            kept: what each layer keeps of them; the last token is added.
+            remembered: from `remember`, without padding.
+            last_ids: (B,) the last token of each.
+            n_before: number of the tokens before it.
+            caches: one for each layer; the last token is added to them.
         """
-        x = (self.token(id_) + self.position[n_before])[:, None]
-        for layer, pairs, earlier in zip(self.decoder, remembered, kept, strict=True):
-            x = layer(x, pairs, None, earlier=earlier)
+        x = (self.token(last_ids) + self.position[n_before])[:, None]
+        for layer, pairs, cache in zip(self.decoder, remembered, caches, strict=True):
+            x = layer(x, pairs, None, cache=cache)
         return self.out(self.norm(x[:, 0]))
 
 
@@ -186,10 +193,10 @@ def log_likelihoods(
 def likeliest(parser: SentenceParser, remembered: Sequence[Tensor], n: int) -> list[Parsed]:
     """About the n likeliest sequences for one sentence, by beam search, the likeliest first."""
     beams, done = [Parsed((START_ID,), 0.0)], list[Parsed]()
-    kept = [Earlier() for _ in parser.decoder]
+    caches = [KeyValueCache() for _ in parser.decoder]
     for n_before in range(parser.config.longest - 1):
         pairs = [one.expand(-1, len(beams), -1, -1, -1) for one in remembered]
-        scores = parser.next_scores(pairs, torch.tensor([one.ids[-1] for one in beams]), n_before, kept)
+        scores = parser.next_scores(pairs, torch.tensor([one.ids[-1] for one in beams]), n_before, caches)
         log_p = F.log_softmax(scores.float(), -1) + torch.tensor([[one.log_probability] for one in beams])
         best = log_p.flatten().topk(min(2 * n, log_p.numel()))
         grown: list[tuple[int, Parsed]] = []
@@ -204,8 +211,8 @@ def likeliest(parser: SentenceParser, remembered: Sequence[Tensor], n: int) -> l
         done.sort(key=lambda one: -one.log_probability)
         if len(done) >= n and done[n - 1].log_probability >= beams[0].log_probability:
             break
-        for earlier in kept:
-            earlier.keep(torch.tensor([beam for beam, _ in grown[:n]]))
+        for cache in caches:
+            cache.keep(torch.tensor([beam for beam, _ in grown[:n]]))
     return done[:n]
 
 

@@ -1,14 +1,14 @@
 """Finds the weights of words that ask for a tempo or a size, and what they weigh beside classifier and tagger.
 
 The words are learnt from the sentences with marked manner, from the marked words by themselves, from expressions and sentences of
-further writers, and from phrases that name a gesture and no manner: one logistic regression for each manner, of few steps, which
-keep the weights of rare pieces small. Tables and their use: `mmm_core.language.manner_words`.
+further writers, from labelled sentences, and from phrases that name a gesture and no manner: one logistic regression for each
+manner, of few steps, which keep the weights of rare pieces small. Tables and their use: `mmm_core.language.manner_words`.
 """
 
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -133,10 +133,20 @@ def training_texts(seed: int = 0) -> Texts:
         if manner not in ASKED or not words:
             raise TrainingDataError(MANNER_EXPRESSIONS, f"line {number}", line, f"{' | '.join(ASKED)} => an expression")
         texts.append((words, frozenset({manner})))
-    texts += [(one.text, one.manners) for one in load_labelled_sentences()]
+    texts += _labelled(known={text for text, _ in texts})
     plain = [phrase for some in load_written_phrases().values() for phrase in some]
     chosen = np.random.default_rng(seed).permutation(len(plain))[:_N_PLAIN]
     return texts + [(plain[i], frozenset()) for i in chosen]
+
+
+def _labelled(known: Collection[str]) -> Texts:
+    """The labelled sentences but known ones, and those without a manner in which the rules find one: a label may leave it out."""
+    return [
+        (one.text, one.manners)
+        for one in load_labelled_sentences()
+        if one.text not in known
+        and (one.manners or all(command.manner.plain for step in read(one.text).steps for command in step))
+    ]
 
 
 def fitted(texts: Sequence[tuple[str, frozenset[str]]]) -> dict[str, NDArray[np.float32]]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import random
 from collections.abc import Callable, Sequence
 from itertools import islice
@@ -11,7 +12,7 @@ import torch
 import torch.nn.functional as F
 from torch import Tensor
 
-from mmm_core.corpus.labelled_sentences import LabelledSentence
+from mmm_core.corpus.labelled_sentences import LabelledSentence, load_labelled_sentences
 from mmm_core.inference.checkpoint import load_text_encoder
 from mmm_core.inference.onednn_linear import can_pack_bf16
 from mmm_core.inference.own_layers_file import save_parser
@@ -21,7 +22,7 @@ from mmm_core.model.sentence_parser import END_ID, ParserConfig, SentenceParser
 from mmm_core.model.text import MiniLm
 from mmm_core.training.drawn_text import TOGETHER, batches_of
 from mmm_core.training.own_layers import copy_layers
-from mmm_core.training.parser_texts import ParserTexts
+from mmm_core.training.parser_texts import ParserTexts, Shares
 from mmm_core.training.run import Run, Schedule, train
 
 STEPS, BATCH = 7000, 64
@@ -42,7 +43,7 @@ def train_parser(
 
     Args:
         out: file of the parser.
-        folder: where the run keeps its state, from which it goes on.
+        folder: where the run keeps its state, from which it goes on; other sentences or steps are another run.
         draw_with: what draws sentences with what they ask for from random numbers; all kinds of `ParserTexts` when None.
         steps: optimisation steps.
     """
@@ -64,15 +65,21 @@ def train_parser(
 
         schedule = Schedule(steps, RATE, final_share=0.02, weight_decay=0.02, save_every=SAVE_EVERY, seed=SEED)
         run = Run(folder, precision="bf16" if can_pack_bf16() else "fp32")
-        train(parser, losses, schedule, run, "parser", slower={"layers.": RATE_OF_COPIED / RATE})
+        train(parser, losses, schedule, run, f"parser_{_data_key(steps)}", slower={"layers.": RATE_OF_COPIED / RATE})
     save_parser(out, parser.requires_grad_(False))
     return parser
+
+
+def _data_key(steps: int) -> str:
+    """Tells apart runs of other sentences, shares, gestures or steps."""
+    digest = hashlib.sha256(repr((steps, BATCH, Shares(), tokens(), load_labelled_sentences())).encode())
+    return digest.hexdigest()[:8]
 
 
 def _batches(draw: Draw, rng: random.Random, first: int) -> list[list[LabelledSentence]]:
     """The batches of `TOGETHER` steps, which depend on the number of the first of them alone."""
     rng.seed(SEED * 1_000_003 + first)
-    return list(islice(batches_of(draw, BATCH, first), TOGETHER))
+    return list(islice(batches_of(draw, BATCH, SEED * 1_000_003 + first + 1), TOGETHER))
 
 
 def _loss(parser: SentenceParser, encoder: MiniLm, batch: Sequence[LabelledSentence]) -> Tensor:
@@ -94,4 +101,4 @@ def _loss(parser: SentenceParser, encoder: MiniLm, batch: Sequence[LabelledSente
 def _canonical(one: LabelledSentence) -> LabelledSentence:
     """A sentence or its mirror image, as it is read."""
     image, is_image = canonical(one.text)
-    return LabelledSentence(image, mirrored(one.steps)) if is_image else one
+    return one._replace(text=image, steps=mirrored(one.steps)) if is_image else one

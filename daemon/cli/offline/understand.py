@@ -60,7 +60,8 @@ def _read(text: str) -> Reading:
     from mmm_core.language.sure_reading import needs_networks
 
     by_rules = read(text)
-    return _reader().read(text) if needs_networks(by_rules) else without_hard_phrases(text, by_rules)
+    by_networks = by_rules.text == text and needs_networks(by_rules)  # a text that is read verbatim has other words
+    return _reader().read(text) if by_networks else without_hard_phrases(text, by_rules)
 
 
 @cache

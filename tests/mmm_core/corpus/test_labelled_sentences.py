@@ -33,6 +33,10 @@ def test_a_line_is_a_sentence_and_its_steps(line: str, steps: tuple[tuple[str, s
     assert [one for step in found.steps for one in step] == [ArmGesture(*one) for one in steps]
 
 
+def test_tempo_and_size_of_a_label_are_its_manners() -> None:
+    assert read_labelled("a => clap slow x2; left raise large | not bow fast").manners == {"slow", "large"}
+
+
 def test_commands_at_once_are_one_step() -> None:
     assert [len(step) for step in read_labelled("a => left heart + nod; bow").steps] == [2, 1]
 

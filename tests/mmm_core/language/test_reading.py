@@ -54,6 +54,8 @@ class TestSlips:
         [
             ("wave um wave your left hand", "wave your left hand"), ("rays your right arm", "raise your right arm"),
             ("salute with your write hand", "salute with your right hand"), ("take a bough", "take a bow"),
+            ("cover your mouse", "cover your mouth"), ("play the violet", "play the violin"),
+            ("lock up the shop", "lock up the shop"), ("wave to the mouse", "wave to the mouse"),
             ("wave wiht yuor right hadn", "wave with your right hand"), ("clap 3 tmes", "clap 3 times"),
             ("WAVE  PLZ", "wave please"), ("nod — sloooowly", "nod , slowly"),
             ("turn you head to the right", "turn your head to the right"),

@@ -21,6 +21,7 @@ from mmm_core.language.plain_gestures import OUTSIDE, gestures
 from mmm_core.language.tagged_words import words_of
 from mmm_core.model.sentence_parser import likeliest, memory_of
 from mmm_core.model.sentence_tagger import word_states
+from mmm_core.training import parser_training
 from mmm_core.training.parser_texts import ParserTexts
 from mmm_core.training.parser_training import Draw, train_parser
 
@@ -41,7 +42,7 @@ def _draw_with(rng: random.Random) -> Draw:
 
 @pytest.mark.long
 def test_it_learns_the_sentences_it_is_given_and_is_read_back(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("mmm_core.training.parser_training.BATCH", 8)
+    monkeypatch.setattr(parser_training, "BATCH", 8)
     path = tmp_path / "parser.safetensors"
     trained, encoder = train_parser(path, tmp_path / "run", _draw_with, steps=160), load_text_encoder()
     for parser in (trained, load_parser(path)):
@@ -54,24 +55,30 @@ def test_it_learns_the_sentences_it_is_given_and_is_read_back(tmp_path: Path, mo
 def test_an_interrupted_run_gives_the_weights_of_one_that_was_not(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """The interrupt comes at the third step."""
-    monkeypatch.setattr("mmm_core.training.parser_training.BATCH", 4)
-    monkeypatch.setattr("mmm_core.training.parser_training.SAVE_EVERY", 1)
-    whole = train_parser(tmp_path / "whole", tmp_path / "run", _draw_with, steps=4)
-
-    n_drawn = itertools.count()
+    """Batches are drawn two at a time, and the interrupt comes within the fourth step, whose batch was drawn with the third's."""
+    for name, value in (("BATCH", 4), ("SAVE_EVERY", 1), ("TOGETHER", 2)):
+        monkeypatch.setattr(parser_training, name, value)
+    whole = train_parser(tmp_path / "whole", tmp_path / "run", _draw_with, steps=5)
+    n_learnt, as_read = itertools.count(), parser_training._canonical
 
     def interrupted(one: LabelledSentence) -> LabelledSentence:
-        if next(n_drawn) == 2 * 4:
+        if next(n_learnt) == 3 * 4 + 1:
             raise KeyboardInterrupt
-        return one
+        return as_read(one)
 
     with monkeypatch.context() as patched:
-        patched.setattr("mmm_core.training.parser_training._canonical", interrupted)
+        patched.setattr(parser_training, "_canonical", interrupted)
         with pytest.raises(KeyboardInterrupt):
-            train_parser(tmp_path / "parts", tmp_path / "again", _draw_with, steps=4)
-    parts = train_parser(tmp_path / "parts", tmp_path / "again", _draw_with, steps=4)
+            train_parser(tmp_path / "parts", tmp_path / "again", _draw_with, steps=5)
+    parts = train_parser(tmp_path / "parts", tmp_path / "again", _draw_with, steps=5)
     assert all(torch.equal(x, y) for x, y in zip(whole.state_dict().values(), parts.state_dict().values(), strict=True))
+
+
+def test_the_batches_of_a_step_do_not_depend_on_what_was_drawn_before() -> None:
+    rng = random.Random(5)
+    draw = ParserTexts(rng).draw
+    again = random.Random()
+    assert parser_training._batches(draw, rng, 8) == parser_training._batches(ParserTexts(again).draw, again, 8)
 
 
 def test_sentences_of_every_kind_are_drawn_and_none_keeps_a_slot() -> None:
