@@ -53,7 +53,8 @@ def train(
 ) -> int:
     """Train a model, or one stage of it with what it needs, from one TOML recipe.
 
-    An interrupted run, even a killed one, goes on where it was with the same result: give the same --run. Recipes that
+    An interrupted run, even a killed one, goes on where it was with the same result: give the same --run (tagger, gestures,
+    choice and manner begin anew). Recipes that
     ship: small (a small model from nothing in minutes, to try things with), compact (a model from nothing, about four hours
     on two CPU cores), compact_deterministic (the model in this package
     trained further, an hour and a half on one core), compact_lengths (its length predictor anew) and paper (MMM as published;
@@ -71,7 +72,7 @@ def train(
 
     Example, what divides a sentence into commands: mmmd train tagger --out tagger.safetensors
 
-    Example, which gestures a whole sentence asks for: mmmd train parser --out parser.safetensors
+    Example, which gestures a whole sentence asks for: mmmd train parser --run runs/parser --out parser.safetensors
 
     Example, what tells which gesture is meant: mmmd train gestures --out gestures.safetensors
 
@@ -89,6 +90,7 @@ def train(
         stage: all of them and a checkpoint, or one; scope builds what refusals rest on again for the run's checkpoint;
             tagger trains what divides sentences into commands, from the marked sentences that ship (50 minutes, no recipe);
             gestures trains what tells which gesture other words mean, from the phrases that ship (an hour, no recipe);
+            parser trains what tells which gestures a sentence asks for, from the labelled sentences (an hour, no recipe);
             choice finds the weights with which one of the ways to read a sentence is chosen (two minutes, no recipe);
             manner finds the weights of words that ask for a tempo or a size, and manner_choice.txt beside --out (a minute);
             average writes the mean of --models; ablation trains variants of a recipe and prints what the probes and real
