@@ -6,6 +6,7 @@ the whole sentence asks for. Of all readings that come of it the likeliest is ta
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from itertools import chain, takewhile
@@ -18,7 +19,7 @@ from mmm_core.language.asides import without_asides
 from mmm_core.language.candidates import Candidate, Ways, chosen, commands_of, in_sentence, is_task, merged
 from mmm_core.language.commands import Reading
 from mmm_core.language.denial import surely_denies
-from mmm_core.language.gesture_steps import is_all_gestures
+from mmm_core.language.gesture_steps import NO_GESTURE, is_all_gestures
 from mmm_core.language.hard_phrases import without_hard_phrases
 from mmm_core.language.joined import with_parted_commands
 from mmm_core.language.manner_words import likely_manners
@@ -87,13 +88,14 @@ class SentenceReader:
         if not words:
             return by_rules
         states = self._models.encode(words)
-        if ways := self._ways(text, words, states):
+        ways = self._ways(text, words, states)
+        if ways:
             found = chosen(ways)
         else:
             found = with_left_manner(by_rules, words, manner_phrases(words, states.manners))
             found = said_at_once(without_repeats(found))
         whole = states.meant
-        outside = whole.probability if whole.name == OUTSIDE else 0.0
+        outside = max(whole.probability if whole.name == OUTSIDE else 0.0, ways.outside if ways else 0.0)
         manners = likely_manners(words, whole.manners, _of_tags(states))
         return replace(without_denied_acts(with_likely_manner(found, manners), whole), outside=outside)
 
@@ -140,16 +142,16 @@ class SentenceReader:
             replace(one, reading=said_at_once(without_repeats(reading)))
             for one, reading in zip(found, finished, strict=True)
         )
-        candidates = self._parsed(candidates, text, states)
-        return Ways(candidates, self._models.classes(commands_of(candidates)), states.meant)
+        candidates, outside = self._parsed(candidates, text, states)
+        return Ways(candidates, self._models.classes(commands_of(candidates)), states.meant, outside)
 
-    def _parsed(self, candidates: list[Candidate], text: str, states: Encoded) -> list[Candidate]:
-        """Candidates and those that the parser proposes, each with the parser's probability of its gestures."""
+    def _parsed(self, candidates: list[Candidate], text: str, states: Encoded) -> tuple[list[Candidate], float]:
+        """Candidates and those that the parser proposes, each with its probability by the parser; and that of no gesture."""
         parse = self._models.parse(states)
         found = [*candidates, *self._proposed(candidates, text, states.meant, parse)]
         meant = self._models.classes(commands_of(found))
-        logs = parse.log_likelihoods([steps_asked(one.reading, meant) for one in found])
-        return merged(replace(one, log_parsed=log) for one, log in zip(found, logs, strict=True))
+        *logs, outside = parse.log_likelihoods([*(steps_asked(one.reading, meant) for one in found), NO_GESTURE])
+        return merged(replace(one, log_parsed=log) for one, log in zip(found, logs, strict=True)), math.exp(outside)
 
     def _proposed(self, candidates: Sequence[Candidate], text: str, whole: Meant, parse: Parse) -> list[Candidate]:
         """Readings in the gestures that the parser finds likeliest.

@@ -93,11 +93,13 @@ class Ways(NamedTuple):
         candidates: no two have the same commands in the same steps.
         meant: the gesture that each of their commands (`commands_of`) means by itself.
         whole: what the whole sentence means.
+        outside: probability that the sentence asks for no gesture, by the parser.
     """
 
     candidates: Sequence[Candidate]
     meant: Mapping[str, Meant]
     whole: Meant
+    outside: float = 0.0
 
 
 def in_sentence(meant: Sequence[Meant]) -> float:

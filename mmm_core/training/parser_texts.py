@@ -9,10 +9,10 @@ from typing import NamedTuple
 from mmm_core.corpus.denials import MEANT, NOTHING, denial_patterns, draw_denial
 from mmm_core.corpus.labelled_sentences import LabelledSentence, load_labelled_sentences
 from mmm_core.corpus.marked_sentences import TaggedSentence, joined, load_marked_sentences
-from mmm_core.language.gesture_steps import ANY_ARM, ArmGesture, arm_of
+from mmm_core.language.gesture_steps import NO_GESTURE, ArmGesture, arm_of
 from mmm_core.language.inflection import gerund
 from mmm_core.language.limbs import is_gesture_verb
-from mmm_core.language.plain_gestures import OUTSIDE, gestures, plain_command
+from mmm_core.language.plain_gestures import gestures, plain_command
 from mmm_core.language.tagged_words import AGAIN, BEGINS, DENIED, FOR_ALL, INSIDE, marked_commands
 from mmm_core.training.gesture_texts import Texts
 from mmm_core.training.slips import slip
@@ -76,7 +76,7 @@ class ParserTexts:
 
     def _outside(self) -> LabelledSentence:
         """A text that is no gesture."""
-        return LabelledSentence(self._texts.outside().text, ((ArmGesture(ANY_ARM, OUTSIDE),),))
+        return LabelledSentence(self._texts.outside().text, NO_GESTURE)
 
     def _gesture(self) -> LabelledSentence:
         """A phrase of a gesture."""
