@@ -79,7 +79,7 @@ def _data_key(steps: int) -> str:
 def _batches(draw: Draw, rng: random.Random, first: int) -> list[list[LabelledSentence]]:
     """The batches of `TOGETHER` steps, which depend on the number of the first of them alone."""
     rng.seed(SEED * 1_000_003 + first)
-    return list(islice(batches_of(draw, BATCH, SEED * 1_000_003 + first + 1), TOGETHER))
+    return list(islice(batches_of(draw, BATCH, first), TOGETHER))
 
 
 def _loss(parser: SentenceParser, encoder: MiniLm, batch: Sequence[LabelledSentence]) -> Tensor:
