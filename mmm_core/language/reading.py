@@ -162,7 +162,7 @@ def _hand_first(said: str) -> tuple[str, str]:
     rest = found["rest"] if found else ""
     if (
         found is None
-        or not re.search(r"\bthen\b|,", rest)
+        or not re.search(r"\b(?:then|afterwards|after that|next|finally)\b|,", rest)
         or re.search(r"\b(?:left|right|other) (?:hand|arm|one)\b|\bthe other\b|\bnot\b", rest)
     ):
         return said, ""

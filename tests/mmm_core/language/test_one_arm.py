@@ -21,6 +21,10 @@ def said(text: str) -> str:
          "lift your right arm > bend your right elbow > lower your right arm"),
         ("put your hand on your heart, then hold it out to me",
          "put your hand on your heart > hold your hand out to me"),
+        ("With your right hand swing a hammer, then turn a key",
+         "swing a hammer with your right hand > turn a key with your right hand"),
+        ("with your left hand make a fist and after that open it wide",
+         "make a fist with your left hand > open your fist wide with your left hand"),
         # one of both arms takes another place
         ("put your hands up left hand on your heart", "raise both hands up > put your left hand on your heart"),
         ("arms wide, right hand on your head", "hold your arms out to the sides > put your right hand on your head"),
