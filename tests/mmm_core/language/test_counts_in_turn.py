@@ -18,6 +18,11 @@ from mmm_core.language.reading import Reading, read
          "circle your left arm forwards three times; circle your left arm backwards twice"),
         ("look twice left and three times right", "look left twice; look right three times"),
         ("salute for three rounds", "salute three times"),
+        ("do a clap, just one", "do a clap once"),
+        ("bow, only two", "bow two times"),
+        # a stop at the end is the end of the gesture, not a stop sign
+        ("wave three times, then stop", "wave three times"),
+        ("wave twice and stop there", "wave twice"),
         # sides in a row, without a mark between them
         ("punch left left right right left", "punch left twice; punch right twice; punch left once"),
         ("head left right left", "look to the left; look to the right; look to the left"),
