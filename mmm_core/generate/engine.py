@@ -29,7 +29,7 @@ _CALIBRATION_TEXTS = (
     ("exactly: bow politely (1.4 times as large)", 2.0), ("turn your head to the left", 1.2),
     ("play the guitar", 3.2), ("point up with your left hand", 1.6),
 )  # fmt: skip
-"""Texts and seconds whose generation shows eight-bit layers the range of their inputs, the same however sentences are read."""
+"""Texts and seconds whose generation shows eight-bit layers the range of their inputs; no network of the reader reads them."""
 
 
 class Engine(MotionModel):

@@ -32,7 +32,7 @@ class ArmGesture(NamedTuple):
 GestureSteps = tuple[tuple[ArmGesture, ...], ...]
 """Steps in order; each holds what is done at the same time."""
 NO_GESTURE: GestureSteps = ((ArmGesture(ANY_ARM, OUTSIDE),),)
-"""What a sentence asks for that is no gesture of the corpus."""
+"""The steps of a sentence that asks for no gesture of the corpus."""
 
 
 @cache

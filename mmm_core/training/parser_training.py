@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import random
 from collections.abc import Callable, Sequence
+from functools import lru_cache, partial
 from itertools import islice
 from pathlib import Path
 
@@ -54,14 +55,11 @@ def train_parser(
         torch.manual_seed(SEED)
         parser = SentenceParser(ParserConfig(tokens()), encoder.config)
         copy_layers(parser.layers, encoder, parser.config.n_shared)
-        drawn: dict[int, list[list[LabelledSentence]]] = {}
+        batches = lru_cache(maxsize=1)(partial(_batches, draw, rng))
 
         def losses(step: int, _generator: torch.Generator) -> dict[str, Tensor]:
-            first = step - step % TOGETHER
-            if first not in drawn:
-                drawn.clear()
-                drawn[first] = _batches(draw, rng, first)
-            return {"loss": _loss(parser, encoder, [_canonical(one) for one in drawn[first][step - first]])}
+            at = step % TOGETHER
+            return {"loss": _loss(parser, encoder, [_canonical(one) for one in batches(step - at)[at]])}
 
         schedule = Schedule(steps, RATE, final_share=0.02, weight_decay=0.02, save_every=SAVE_EVERY, seed=SEED)
         run = Run(folder, precision="bf16" if can_pack_bf16() else "fp32")
@@ -71,9 +69,9 @@ def train_parser(
 
 
 def _data_key(steps: int) -> str:
-    """Tells apart runs of other sentences, shares, gestures or steps."""
-    digest = hashlib.sha256(repr((steps, BATCH, Shares(), tokens(), load_labelled_sentences())).encode())
-    return digest.hexdigest()[:8]
+    """Tells apart runs of other sentences, shares, gestures or steps; the same in every process."""
+    sentences = [(one.text, one.steps) for one in load_labelled_sentences()]  # sets of manners have no fixed order
+    return hashlib.sha256(repr((steps, BATCH, Shares(), tokens(), sentences)).encode()).hexdigest()[:8]
 
 
 def _batches(draw: Draw, rng: random.Random, first: int) -> list[list[LabelledSentence]]:

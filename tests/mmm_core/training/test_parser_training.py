@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import itertools
+import os
 import random
+import subprocess
+import sys
 from collections import Counter
 from pathlib import Path
 
@@ -79,6 +82,20 @@ def test_the_batches_of_a_step_do_not_depend_on_what_was_drawn_before() -> None:
     draw = ParserTexts(rng).draw
     again = random.Random()
     assert parser_training._batches(draw, rng, 8) == parser_training._batches(ParserTexts(again).draw, again, 8)
+
+
+@pytest.mark.long
+def test_another_process_goes_on_with_the_same_run() -> None:
+    """The order of sets, and with it their text, differs from process to process."""
+    said = "from mmm_core.training.parser_training import _data_key; print(_data_key(5))"
+    names = {
+        subprocess.run(
+            [sys.executable, "-c", said], env={**os.environ, "PYTHONHASHSEED": seed}, capture_output=True, text=True,
+            timeout=120, check=True,
+        ).stdout
+        for seed in ("1", "2", "3")
+    }  # fmt: skip
+    assert len(names) == 1
 
 
 def test_sentences_of_every_kind_are_drawn_and_none_keeps_a_slot() -> None:
