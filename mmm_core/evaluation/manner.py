@@ -5,6 +5,7 @@ from __future__ import annotations
 from itertools import pairwise
 
 import numpy as np
+from scipy.ndimage import uniform_filter1d
 
 from mmm_core.corpus.families import FAMILIES
 from mmm_core.corpus.heldout import Command
@@ -61,9 +62,44 @@ def _pace(motion: Motion, command: Command) -> float:
 
 def _size_ratio(motion: Motion, plain: Motion, command: Command) -> float:
     """How many times larger a motion is than the plain one, by the first measure that both have."""
-    measures = (_stroke_range, _cycle_range_m, _circle_width_m, _signal_range, _reach)
-    sizes = ((measure(motion, command), measure(plain, command)) for measure in measures)
+    measures = (_stroke_range, _cycle_range_m, _circle_width_m)
+    sizes = [(measure(motion, command), measure(plain, command)) for measure in measures]
+    sizes += [_cycle_ranges_m(motion, plain), _circle_widths_m(motion, plain)]
+    sizes += [(measure(motion, command), measure(plain, command)) for measure in (_signal_range, _reach)]
     return next((a / b for a, b in sizes if a > 0 and b > 0), 1.0)
+
+
+def _cycle_ranges_m(motion: Motion, plain: Motion) -> tuple[float, float]:
+    """Ranges of a repeated stroke of both motions, where the plain one alone repeats it clearly; else 0."""
+    found = strokes_of(plain)
+    if found is None or not is_cyclic(found):
+        return 0.0, 0.0
+    period = max(3, int(np.median(np.diff(found.frames))))
+    first, last = found.frames[0], found.frames[-1]
+    return _range_about_mean_m(motion, plain, first, last, period), _range_about_mean_m(
+        plain, plain, first, last, period
+    )
+
+
+def _range_about_mean_m(motion: Motion, plain: Motion, first: int, last: int, period: int) -> float:
+    """Range of the farther-swinging hand about its mean over a period, between two frames of the plain motion, in time."""
+    wrists = motion.joints_m[:, 20:] - motion.joints_m[:, [9]]
+    away = wrists - uniform_filter1d(wrists, period, axis=0, mode="nearest")
+    per_frame = len(motion.joints_m) / len(plain.joints_m)
+    return float(np.ptp(away[round(first * per_frame) : round(last * per_frame) + 1], axis=0).max())
+
+
+def _circle_widths_m(motion: Motion, plain: Motion) -> tuple[float, float]:
+    """Widths of a circle that only the plain motion draws round: of the same hand in the same share of the time."""
+    found = drawn_circle(farther_hand(plain.joints_m))
+    if found is None:
+        return 0.0, 0.0
+    widths: list[float] = []
+    for shown in (motion, plain):
+        per_frame = len(shown.joints_m) / len(plain.joints_m)
+        first, last = (round(frame * per_frame) for frame in found)
+        widths.append(width_m(farther_hand(shown.joints_m)[first : last + 1]))
+    return widths[0], widths[1]
 
 
 def _stroke_range(motion: Motion, command: Command) -> float:

@@ -198,9 +198,9 @@ class MotionGeneration:
             begins = [end // FRAMES_PER_TOKEN - len(step.ids) for end, step in zip(ends, made, strict=True)]
             features = features_of(self._engine, ids, list(zip(begins, made, strict=True)))
             if any(not s.plain for s in stretches):
-                features, ends = performed(
-                    features, with_kept_sizes(features, stretches, self._words_of_steps[: len(made)])
-                )
+                words = self._words_of_steps[: len(made)]
+                kept = with_kept_sizes(features, stretches, words, widens=n_frames is None)
+                features, ends = performed(features, kept)
             motion = self._engine.motion_of(features, self._text, self._seed, verdict, n_frames, is_mirrored=mirrored)
         else:
             motion = self._engine.motion(ids, self._text, self._seed, verdict, n_frames, is_mirrored=mirrored)

@@ -14,11 +14,16 @@ from scipy.spatial.transform import Rotation
 
 from mmm_core.motion.features import HUMANML3D, features_from_rotations, recover, root_path
 from mmm_core.motion.motion import FPS, Motion
-from mmm_core.motion.repetitions import body_path
-from mmm_core.motion.sizing import sized
+from mmm_core.motion.repetitions import body_path, strokes_of
+from mmm_core.motion.sizing import is_cyclic, sized
 from mmm_core.motion.skeleton import Array, forward_kinematics, from_six_d, rotation_y, six_d
+from mmm_core.motion.wide_way import reach_m, way_of, with_wide_way
 
 _SPINE, _HEAD = (3, 6, 9), (15,)
+_WIDE_WAY_TIMES, _WIDE_WAY_FRAMES = 3.0, 30
+"""A wide way takes so many times as long as the way before, and is so lengthened to this many frames at most."""
+_ENOUGH = 0.95
+"""Share of the distance asked for that lets the hands keep their way."""
 RAMP_FRAMES = 5
 """Frames over which size changes between two commands of a motion."""
 STILL_M_S = 0.2
@@ -26,6 +31,23 @@ STILL_M_S = 0.2
 _FAR = 0.6
 """Share of the greatest distance from the first frame beyond which a pose counts as held."""
 _LIMBS = (slice(0, 3), slice(3, 6), slice(6, 9), slice(9, 12))
+
+
+@dataclass(frozen=True)
+class _Swing:
+    """A part of a performed motion whose arms swing out.
+
+    Attributes:
+        begin, end: first frame of the part, and the one after its last.
+        first, last: frames from its beginning between which the arms swing out.
+        wanted_m: distance from their first place to which the hands should come, metres.
+    """
+
+    begin: int
+    end: int
+    first: int
+    last: int
+    wanted_m: float
 
 
 @dataclass(frozen=True)
@@ -38,6 +60,7 @@ class Stretch:
         size: factor of size.
         hold_s: seconds that the pose is held; 0 leaves it as it is.
         trunk_pitch_rad, head_pitch_rad: posture that is added to trunk and head, forward and down positive.
+        way: factor by which the hands go farther on the way to their gesture; above 1 they swing out wide.
     """
 
     start: int
@@ -47,6 +70,7 @@ class Stretch:
     hold_s: float = 0.0
     trunk_pitch_rad: float = 0.0
     head_pitch_rad: float = 0.0
+    way: float = 1.0
 
     @property
     def plain(self) -> bool:
@@ -68,17 +92,26 @@ def performed(features: NDArray[np.float32], stretches: Sequence[Stretch]) -> tu
     local[:, 0] = rotation_y(yaw)
     local[:, 1:] = from_six_d(np.asarray(features[:, 67:193], np.float64).reshape(-1, 21, 6))
     places: list[Array] = []
+    swings: list[_Swing] = []
+    ends: list[int] = []
     for stretch in stretches:
-        motion = _motion(features[stretch.start : stretch.end])
+        part = slice(stretch.start, stretch.end)
+        motion = _motion(features[part])
+        wanted_m = stretch.way * reach_m(local[part])
         if stretch.size != 1.0:
-            part = slice(stretch.start, stretch.end)
             local[part] = sized(local[part], local[0], motion, stretch.size, _ramp(stretch, len(features)))
         if stretch.trunk_pitch_rad or stretch.head_pitch_rad:
-            _lean(local[stretch.start : stretch.end], stretch, len(features))
-        places.append(stretch.start + _times(motion, stretch))
+            _lean(local[part], stretch, len(features))
+        way = _wide_way(local[part], motion, stretch, wanted_m)
+        frames = _times(motion, stretch, way)
+        begin = ends[-1] if ends else 0
+        ends.append(begin + len(frames))
+        places.append(stretch.start + frames)
+        if way is not None:
+            first, last = np.searchsorted(frames, way).tolist()
+            swings.append(_Swing(begin, ends[-1], first, last, wanted_m))
     where = np.clip(np.concatenate(places), 0, len(features) - 1)
-    ends = np.cumsum([len(p) for p in places]).tolist()
-    return _features(yaw, root, local, where), [int(e) for e in ends]
+    return _features(yaw, root, local, where, swings), ends
 
 
 def motion_of(features: NDArray[np.float32]) -> Motion:
@@ -94,8 +127,8 @@ def _motion(features: NDArray[np.float32]) -> Motion:
     )  # fmt: skip
 
 
-def _features(yaw: Array, root: Array, local: Array, where: Array) -> NDArray[np.float32]:
-    """Features of rotations and root at (n,) places between the frames."""
+def _features(yaw: Array, root: Array, local: Array, where: Array, swings: Sequence[_Swing]) -> NDArray[np.float32]:
+    """Features of rotations and root at (n,) places between the frames, and with arms that swing out wide."""
     before = np.floor(where).astype(np.intp)
     after = np.minimum(before + 1, len(yaw) - 1)
     w = where - before
@@ -104,8 +137,18 @@ def _features(yaw: Array, root: Array, local: Array, where: Array) -> NDArray[np
     six = six_d(local[:, 1:])
     rotations = from_six_d(six[before] + w[:, None, None] * (six[after] - six[before]))
     whole = np.concatenate([rotation_y(mixed_yaw)[:, None], rotations], 1)
+    for swing in swings:
+        part = slice(swing.begin, swing.end)
+        whole[part] = with_wide_way(whole[part], (swing.first, swing.last), swing.wanted_m)
     joints, _ = forward_kinematics(whole, mixed_root)
-    return features_from_rotations(joints, mixed_yaw, rotations, HUMANML3D)
+    return features_from_rotations(joints, mixed_yaw, whole[:, 1:], HUMANML3D)
+
+
+def _wide_way(local: Array, motion: Motion, stretch: Stretch, wanted_m: float) -> tuple[int, int] | None:
+    """First and last frame of a way that is to be wide; None where the hands go far enough, or repeat a stroke."""
+    if stretch.way <= 1.0 or is_cyclic(strokes_of(motion)) or reach_m(local) >= _ENOUGH * wanted_m:
+        return None
+    return way_of(local)
 
 
 def _lean(local: Array, stretch: Stretch, n_frames: int) -> None:
@@ -129,11 +172,16 @@ def _ramp(stretch: Stretch, n_frames: int) -> Array:
     return weights
 
 
-def _times(motion: Motion, stretch: Stretch) -> Array:
+def _times(motion: Motion, stretch: Stretch, way: tuple[int, int] | None) -> Array:
     """(n,) fractional frame numbers, from the stretch's start, at which the performed motion samples it."""
     T = len(motion.joints_m)
     n = max(4, round(T / stretch.tempo))
     places = (np.arange(n) + 0.5) * T / n - 0.5
+    if way is not None:
+        on_way = (places > way[0]) & (places < way[1])
+        n_before = max(2, int(on_way.sum()))
+        longer = np.linspace(*way, max(n_before, min(round(_WIDE_WAY_TIMES * n_before), _WIDE_WAY_FRAMES)) + 2)
+        places = np.concatenate([places[places <= way[0]], longer[1:-1], places[places >= way[1]]])
     still = held_frames(motion) if stretch.hold_s else None
     if still is None:
         return places
