@@ -30,7 +30,8 @@ def test_say_is_accepted_moves_and_is_done(robot):
     assert accepted.understood == "moves the right hand to the side", "what the motion shows, whatever the text was"
     assert (done.shown, done.seen, done.missing) == ("shown", accepted.understood, "")
     assert 0 < done.first_motion_ms < 2000
-    assert done.gate_clipped_frames == 0 and 0 < done.peak_speed_share <= 1
+    assert done.gate_clipped_frames == 0 or done.underruns, "the gate changes a goal only after frames that came late"
+    assert 0 < done.peak_speed_share <= 1
     assert done.duration_s == pytest.approx(done.frames / RATE_HZ, abs=0.2)
 
 
