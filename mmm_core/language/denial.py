@@ -60,8 +60,8 @@ def without_denial(text: str) -> Denial:  # noqa: PLR0912  one branch for each f
         clause = part.strip(" ,")
         if not clause:
             continue
-        if (forbidden := forms.FORBIDDEN.match(clause)) and _is_act(forbidden["what"]):
-            denied.append(forbidden["what"])
+        if (forbidden := _forbidden(clause)) and _is_act(forbidden):
+            denied.append(forbidden)
             continue
         found = None if forms.NO_DENIAL.match(clause) else forms.DENIES.match(clause)
         if found and (what := found["what"].strip(" ,")):
@@ -120,9 +120,18 @@ def _of_whole_text(text: str) -> Denial | None:
         return Denial(turned[0], (turned[1],))
     if other := forms.NOT_USING.match(text):
         return Denial(_with_side(other["rest"], OTHER[other["side"]]), (f"use the {other['side']} hand",))
+    for form in (forms.SWAPPED, forms.ASKED_AND_DENIED):
+        if (found := form.match(text)) and _is_act(found["what"]):
+            return Denial(found["rest"], (found["what"],))
     if nothing := forms.CANCELLED.fullmatch(text) or forms.THREATENS.fullmatch(text):
         return Denial("", (nothing["what"],))
     return None
+
+
+def _forbidden(clause: str) -> str:
+    """What a clause forbids or sets aside as a whole: "the bow is banned", "save the bow for later"; "" for nothing."""
+    found = forms.FORBIDDEN.match(clause) or forms.SET_ASIDE.match(clause)
+    return next(filter(None, found.groups()), "") if found else ""
 
 
 def denied_side(what: str) -> str:

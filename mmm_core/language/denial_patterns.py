@@ -75,7 +75,7 @@ NOT_USING = re.compile(
 )
 GO_ON = re.compile(
     r"^(\W*(?:skip|forget|leave out|never mind|instead of|rather than) [^,]+?),? and (?:go (?:straight|right|directly) (?:to|on to|for)|just|do|give me|instead) "
-    r"|^(\W*(?:skip|forget|leave out|never mind|ditch|scrap|bin|lose|nix|axe|forgo) (?:the|your|that) \w+),? and (?!(?:the|an?|your|no|any|not|all)\b)"
+    r"|^(\W*(?:(?:skip|forget|leave out|never mind|ditch|scrap|bin|lose|nix|axe|forgo) (?:the|your|that) \w+|(?:drop|dump|omit|cease|postpone|disregard) (?:the|that) \w+(?: \w+)?)),? and (?!(?:the|an?|your|no|any|not|all)\b)"
 )
 STOP_AND = re.compile(
     r"((?:^\W*|[,;.] )(?:please )?(?:stop|quit|enough (?:of|with)|no more|leave off|cut out|knock off)(?: (?:with|of))?(?: (?:that|the|your|all that|all the|all this|this))? \w+ing\b[^,]*?),? and (?!\w+ing\b|(?:left|right|up|down|back|forth|forwards?|out|round)\b|(?:your |the |both |left |right )*(?:hands?|arms?|head|fingers?|fists?|shoulders?)$)(?=\w+ \w)"
@@ -101,6 +101,23 @@ THREATENS = re.compile(
 FORBIDDEN = re.compile(
     r"^(?P<what>.+?) (?:is|are|has been|have been) (?:banned|forbidden|not allowed(?! to)|off limits|off the table|cancelled|prohibited|out of the question)\b.*$"
 )
+SET_ASIDE = re.compile(
+    r"^(?:please |(?:and|but|so|then) |(?:let us|we will|we shall|you can|you may) )*(?:"
+    r"(?:save|keep|leave|spare) (?:the|your|that|those|all the) (?P<saved>.+?) (?:for (?:later|another|some other|next|tomorrow|when|someone|somebody|others|the others|a rainy))\b(?!.* and \w).*"
+    r"|give (?:the|your|that|all the|all that) (?P<rested>.+?) a (?:miss|rest|break|pass|skip)\b.*"
+    r"|permission to (?P<asked>.+?) (?:is )?(?:denied|refused)"
+    r"|(?:the |your |that )?(?P<over>.+?) (?:is|are) (?:so last \w+|old hat|history|(?:off|not on) the menu|not (?:wanted|needed|necessary|required|welcome)|unnecessary|denied|vetoed|beneath you|(?:a )?no go|for (?:another|some other) (?:day|time)|overrated)\b.*"
+    r"|(?:the |your |that )?(?P<waits>.+?) (?:can|must|should|will have to|has to|have to) wait\b(?! (?:for|until|till)\b).*)$"
+)
+"""'Save the bow for later', 'give the drums a rest', 'the bow can wait'."""
+SWAPPED = re.compile(
+    r"^(?:please |let us |can (?:you|we) |could (?:you|we) )*(?:swap|trade|exchange|replace)(?: out)? (?!(?:it|them|places|sides|hands|arms)\b)(?:the |your |that |all the )?(?P<what>[^,.;:]+?)(?: out)? (?:for|with|by) (?:a bit of |some )?(?P<rest>.+)$"
+)
+"""'Swap the wave for a bow' is a bow."""
+ASKED_AND_DENIED = re.compile(
+    r"^(?P<what>(?!what\b)[^,.;!?]+)\?+ (?:no|nope|nah|negative|never|not today|not now|not again|wrong|hardly|forget it|no thanks|no thank you|no way)\b(?! ?\?)[,.;!: -]*(?P<rest>(?!the (?:left|right)\b).*)$"
+)
+"""'Wave? No, bow.'"""
 ANY_ARM_BUT = re.compile(
     r",? (?:with|using) (?:whichever|whatever|any|either) (?:hand|arm|one)(?: you (?:like|want|fancy|please|prefer))?,? "
     r"(?:(?:so|as|just as) long as it is not|but|except|other than) (?:the|your) (?P<side>left|right)(?: one| hand| arm)?"

@@ -52,7 +52,8 @@ SURELY_DENIED = 0.9
 _MAY_DENY = re.compile(
     r"\b(?:no|not|nor|neither|never|none|nobody|nothing|nuh|without|but|bar|except|besides|other than|rather|else|only|was|were|"
     r"had|rude|cancel\w*|withdr[ae]w\w*|dropp?ed|scrap\w*|banned|forbidden|prohibited|over|enough|stop\w*|skip\w*|quit\w*|forget|"
-    r"leave|refrain|avoid|hold|off|out|dinnae|dont|cant|wont|cut)\b|n't\b"
+    r"leave|refrain|avoid|hold|off|out|dinnae|dont|cant|wont|cut|instead|spare|save|ignore|disregard|resist|drop|ditch|bin|swap|replace|veto\w*|"
+    r"denied|refuse\w*|plenty|last thing|put an? (?:sock|cork|lid|pin|stop|end)|zip it)\b|n't\b"
 )
 """Words of which a sentence that asks for nothing has one."""
 
