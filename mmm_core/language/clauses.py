@@ -93,13 +93,20 @@ def _divided(text: str) -> list[str]:
         whole = completed(_bare(clause), _bare(parts[-1])) if parts else None
         if whole is None and len(parts) > 1 and _leans(clause):  # "it" may be a limb that was named before
             whole = completed(_bare(clause), ", ".join(map(_bare, parts)))
-        if whole is not None:
+        if whole is not None and _is_manner_alone(clause) and not text[spans[i - 1].end : span.start].strip(" .,;!"):
+            parts[-1] = whole  # "nod. slowly."
+        elif whole is not None:
             parts.append(whole)
         elif parts and _leans(clause):
             parts[-1] += text[spans[i - 1].end : span.end]
         else:
             parts.append(clause)
     return parts
+
+
+def _is_manner_alone(clause: str) -> bool:
+    """Whether a clause has only words of manner and asks for nothing more: "slowly", but not "slower"."""
+    return is_manner(_bare(clause)) and re.search(r"\b(?:\w+er|more|less)\b", clause) is None
 
 
 def _other_side(parts: list[str], wanted: str) -> list[str]:

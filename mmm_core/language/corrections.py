@@ -7,7 +7,7 @@ import re
 from mmm_core.language.ellipsis import completed
 
 _BUT_NOW = re.compile(
-    r"^(?P<before>.+?)(?:[.,;!]+|\.\.\.)\s*(?:(?:no(?=[,.])|hm+|oh|ah|er|um|wait|sorry|well|actually|rather|i mean|or|wrong (?:one|arm|hand|side|way)|scratch that|my mistake)[,. ]+)+"
+    r"^(?P<before>.+?)(?:[.,;!]+|\.\.\.)\s*(?:(?:no(?=[,.])|hm+|oh|ah|er|um|wait|sorry|well|actually|rather|i mean|or|wrong (?:one|arm|hand|side|way)|scratch that|my mistake|correction|oops|my bad)[,. ]+)+"
     r"(?:not (?:that|this|with that|the)(?: (?:arm|hand|one|side|way|left|right))?[,.]? )?(?:but )?(?:(?:just|only|make (?:that|it)|i mean|i meant|use|with) )*"
     r"(?P<now>(?:your |the )?(?:left|right|other)(?: one| arm| hand| side| way)?|both(?: arms| hands)?)(?: please)?\W*$"
 )

@@ -46,7 +46,7 @@ def without_denial(text: str) -> Denial:  # noqa: PLR0912  one branch for each f
         return found
     text = forms.ANY_ARM_BUT.sub(lambda m: f" with your {OTHER[m['side']]} hand", text)
     denied: list[str] = []
-    text = forms.STOP_AND.sub(r"\1, ", forms.GO_ON.sub(lambda m: f"{m[1] or m[2]}, ", text))
+    text = forms.STOP_AND.sub(r"\1, ", forms.GO_ON.sub(lambda m: f"{m[1] or m[2] or m[3]}, ", text))
     for pattern in (forms.LEAVE, forms.RESTS):
         text = pattern.sub(lambda m: _note(denied, f"the {m['side']} arm") + ", ", text)
     leaves = len(denied)
@@ -60,7 +60,7 @@ def without_denial(text: str) -> Denial:  # noqa: PLR0912  one branch for each f
         clause = part.strip(" ,")
         if not clause:
             continue
-        if (forbidden := _forbidden(clause)) and _is_act(forbidden):
+        if (forbidden := _forbidden(clause)) and _is_denied_act(forbidden):
             denied.append(forbidden)
             continue
         found = None if forms.NO_DENIAL.match(clause) else forms.DENIES.match(clause)
@@ -76,7 +76,7 @@ def without_denial(text: str) -> Denial:  # noqa: PLR0912  one branch for each f
                 continue
             if (
                 _is_target(what, clause, rest)
-                or _is_act(what)
+                or _is_denied_act(what)
                 or forms.IN_PLACE_OF.match(clause)
                 or forms.SURELY_DENIES.match(clause)
             ):
@@ -93,7 +93,10 @@ def without_denial(text: str) -> Denial:  # noqa: PLR0912  one branch for each f
             what = inline["what"].strip()
             only = denied_side(what)
             is_denied = (
-                only or forms.DIRECTION_ONLY.match(what) or _is_act(what) or forms.ALWAYS_DENIES.match(inline["not"])
+                only
+                or forms.DIRECTION_ONLY.match(what)
+                or _is_denied_act(what)
+                or forms.ALWAYS_DENIES.match(inline["not"])
             )
             if is_denied or (inline["not"].startswith(("but ", "and ")) and forms.PLACE.match(what)):
                 side = only or side
@@ -101,11 +104,7 @@ def without_denial(text: str) -> Denial:  # noqa: PLR0912  one branch for each f
                 clause = (clause[: inline.start()] + clause[inline.end() :]).strip()
         if not forms.SAYS_NOTHING.fullmatch(clause):
             rest.append(clause)
-    rest = [
-        clause
-        for i, clause in enumerate(rest)
-        if not (denied and (_is_said_again(clause, rest[:i]) or _is_statement(clause) or _is_name(clause)))
-    ]
+    rest = _requested(rest) if denied else rest
     if not denied:
         return Denial(text if not rest or leaves else _as_it_was(text, rest))
     return Denial(with_other_side(", ".join(rest), side), tuple(denied), anything)
@@ -120,8 +119,12 @@ def _of_whole_text(text: str) -> Denial | None:
         return Denial(turned[0], (turned[1],))
     if other := forms.NOT_USING.match(text):
         return Denial(_with_side(other["rest"], OTHER[other["side"]]), (f"use the {other['side']} hand",))
-    for form in (forms.SWAPPED, forms.ASKED_AND_DENIED):
-        if (found := form.match(text)) and _is_act(found["what"]):
+    for form in forms.INSTEAD:
+        if (
+            (found := form.match(text))
+            and _is_denied_act(found["what"])
+            and (not found["rest"] or _is_denied_act(found["rest"]))
+        ):
             return Denial(found["rest"], (found["what"],))
     if nothing := forms.CANCELLED.fullmatch(text) or forms.THREATENS.fullmatch(text):
         return Denial("", (nothing["what"],))
@@ -154,10 +157,14 @@ def _without_opening_denials(text: str, denied: list[str]) -> str:
         forms.GERUND_CLAUSE,
         forms.GERUND_FIRST,
         forms.NOT_A_BUT_B,
+        forms.NOT_THIS_BUT_THAT,
+        forms.IN_PLACE_FIRST,
         forms.NOT_THAT_PART,
     ):
         found = pattern.match(text)
-        if found and (pattern is forms.NOT_THAT_PART or forms.IN_PLACE_OF.match(found[0]) or _is_act(found["what"])):
+        if found and (
+            pattern is forms.NOT_THAT_PART or forms.IN_PLACE_OF.match(found[0]) or _is_denied_act(found["what"])
+        ):
             denied.append(found["what"].strip())
             text = found["rest"] if "rest" in pattern.groupindex else text[found.end() :]
             if limb := re.search(r"\b(hand|arm|fist|leg|shoulder|ear|eye|elbow|knee|cheek|wrist|hip)\b", found["what"]):
@@ -169,6 +176,23 @@ def _as_it_was(text: str, rest: list[str]) -> str:
     """The text; without its clauses that were waved aside, where there were some."""
     n = sum(bool(clause.strip(" ,")) for clause in forms.BETWEEN.split(text))
     return text if n == len(rest) else ", ".join(rest)
+
+
+def _requested(clauses: list[str]) -> list[str]:
+    """The clauses beside a denial that ask for something: without repetitions, reasons and names."""
+    offered = [_offered(clause) for clause in clauses]
+    return [
+        clause
+        for i, clause in enumerate(offered)
+        if not (_is_said_again(clause, offered[:i]) or _is_statement(clause) or _is_name(clause))
+    ]
+
+
+def _offered(clause: str) -> str:
+    """The act of a clause that offers it instead of what is denied: "guitar" of "I said guitar"; any other clause as it is."""
+    found = forms.OFFERED.match(clause)
+    act = (found["act"] or found["it"]) if found else ""
+    return act if act and _is_denied_act(act) else clause
 
 
 def _is_said_again(clause: str, before: list[str]) -> bool:
@@ -183,7 +207,7 @@ def _is_statement(clause: str) -> bool:
 
 def _is_name(clause: str) -> bool:
     """Whether a clause beside a denial is a single word that the corpus does not know: "don't wave, Liam"."""
-    return " " not in clause and clause not in _corpus_words()
+    return " " not in clause and not all(word in _corpus_words() for word in clause.split("-"))
 
 
 @cache
@@ -220,6 +244,11 @@ def surely_denies(text: str) -> bool:
 def _is_act(what: str) -> bool:
     named = SPEAKS_OF_AN_ACT.search(what) or forms.ACTS_ALSO.search(what) or everyday(what) or is_known_phrase(what)
     return bool(named or is_gesture_verb(base_of(what.partition(" ")[0])))
+
+
+def _is_denied_act(what: str) -> bool:
+    """Whether words after a denial are an act, or the noun of one: "no guitar"."""
+    return _is_act(what) or forms.NOUN_OF_AN_ACT.match(what) is not None
 
 
 def _with_side(clause: str, side: str) -> str:

@@ -37,6 +37,13 @@ ONE_HAND_FOR_THE_OTHER = re.compile(
 NOT_A_BUT_B = re.compile(
     r"^\W*not (?!only\b)(?P<what>(?:an?|the|your|with|to)? ?[^,;]+?),? but (?:rather |instead )?(?P<rest>.+)$"
 )
+NOT_THIS_BUT_THAT = re.compile(
+    r"^\W*it is not (?P<what>(?:an?|the|your) [^,.;]+?)(?: (?:that )?(?:i|we) (?:want|need|meant|mean|said|asked for|am after|are after))?[,.;]+ (?:it is|but|i (?:want|meant|said|asked for)) (?P<rest>\w.+)$"
+)
+"""'It is not a wave I want, it is a bow.'"""
+IN_PLACE_FIRST = re.compile(
+    r"^\W*(?:instead of|rather than|in place of|in lieu of) (?P<what>(?:an? |the |your )?\w+(?:[ -]\w+)?),? (?P<rest>(?:do|give|show|make|have)\b.+)$"
+)
 NOT_THAT_PART = re.compile(
     r"^\W*not (?P<what>(?:with )?(?:the|your) (?:left|right) (?:hand|arm|shoulder|ear|eye|elbow|knee|cheek|wrist|hip)),? (?P<rest>(?!but\b).*\b(?:left|right) one\b.*)$"
 )
@@ -67,15 +74,17 @@ SIDEWAYS = re.compile(r"(?:to |at |on )?(?:the |your )?(?P<side>left|right)(?: s
 WAVED_ASIDE = re.compile(rf"^{_any('waved aside')}$")
 NO_DENIAL = re.compile(rf"^\W*{_any('no denial')}")
 KEEP_DOING = re.compile(
-    r"^\W*(?:please )?(?:do not|never) stop (?P<rest>\w.+)$|^\W*(?:please )?do not (?:forget|hesitate) to (?P<other>.+)$"
+    r"^\W*(?:please )?(?:do not|never) (?:stop|quit|cease|give up|leave off) (?P<rest>\w.+)$|^\W*(?:please )?do not (?:forget|hesitate) to (?P<other>.+)$"
 )
 ACTS_ALSO = re.compile(rf"\b{_any('act')}\w*")
+NOUN_OF_AN_ACT = re.compile(rf"^(?!(?:so|too|that|quite|very|as) )(?:\w+ ){{0,5}}{_any('noun')}\b")
 NOT_USING = re.compile(
     r"^\W*(?:please )?(?:do not|never) (?:use|take) (?:your |the )?(?P<side>left|right) (?:hand|arm|one) (?:to|for|when|and) (?P<rest>\w.+)$"
 )
 GO_ON = re.compile(
     r"^(\W*(?:skip|forget|leave out|never mind|instead of|rather than) [^,]+?),? and (?:go (?:straight|right|directly) (?:to|on to|for)|just|do|give me|instead) "
-    r"|^(\W*(?:(?:skip|forget|leave out|never mind|ditch|scrap|bin|lose|nix|axe|forgo) (?:the|your|that) \w+|(?:drop|dump|omit|cease|postpone|disregard) (?:the|that) \w+(?: \w+)?)),? and (?!(?:the|an?|your|no|any|not|all)\b)"
+    r"|^(\W*(?:spare (?:me|us) (?:the|your|that) \w+(?: \w+)?|(?:quit|stop|enough of|no more of) (?:the|your|that|this) \w+(?: \w+){0,2}|(?:skip|forget|leave out|never mind|ditch|scrap|bin|lose|nix|axe|forgo) (?:the|your|that) \w+|(?:drop|dump|omit|cease|postpone|disregard) (?:the|that) \w+(?: \w+)?)),? and (?!(?:the|an?|your|no|any|not|all)\b)"
+    r"|^(\W*(?:(?:save|keep|leave) (?:the|your|that) [^,]+? for (?:later|bedtime|another \w+|tomorrow|\w+day)|leave (?:the|that) [^,]+? to (?:me|us|him|her|them|(?:your|the|my|our) \w+)|put (?:the|your|that) [^,]+? away)),? and (?=\w)"
 )
 STOP_AND = re.compile(
     r"((?:^\W*|[,;.] )(?:please )?(?:stop|quit|enough (?:of|with)|no more|leave off|cut out|knock off)(?: (?:with|of))?(?: (?:that|the|your|all that|all the|all this|this))? \w+ing\b[^,]*?),? and (?!\w+ing\b|(?:left|right|up|down|back|forth|forwards?|out|round)\b|(?:your |the |both |left |right )*(?:hands?|arms?|head|fingers?|fists?|shoulders?)$)(?=\w+ \w)"
@@ -98,12 +107,20 @@ THREATENS = re.compile(
     r"if (?:you|i (?:see|catch) you) (?P<what>(?=.*\b(?:again|one more|once more|another)\b).+?) (?:i|we|there|he|she|they|somebody)\b.*"
 )
 """'If you bow once more I shall scream.'"""
+OFFERED = re.compile(
+    r"^(?:(?:i|we) (?:said|want(?:ed)?|asked for|mean|meant|need|(?:would|'d) (?:like|prefer|love|rather (?:have|see))(?: to see)?|came (?:to (?:hear|see)|for))(?: you)?(?: to)?"
+    r"|(?:it|that) is(?= (?:an?|the|your) )|what (?:i|we|they)\b[^,]* (?:is|are)|this time(?: (?:i|we) (?:want|would like)(?: to see)?(?: you)?)?|make that|let us (?:have|see|say))(?: now)? (?P<act>(?!you\b)\w.*)$"
+    r"|^(?P<it>\w+(?: \w+)?) it is$"
+)
+"""'I said guitar' beside a denial, and 'tennis it is'."""
 FORBIDDEN = re.compile(
     r"^(?P<what>.+?) (?:is|are|has been|have been) (?:banned|forbidden|not allowed(?! to)|off limits|off the table|cancelled|prohibited|out of the question)\b.*$"
 )
 SET_ASIDE = re.compile(
     r"^(?:please |(?:and|but|so|then) |(?:let us|we will|we shall|you can|you may) )*(?:"
-    r"(?:save|keep|leave|spare) (?:the|your|that|those|all the) (?P<saved>.+?) (?:for (?:later|another|some other|next|tomorrow|when|someone|somebody|others|the others|a rainy))\b(?!.* and \w).*"
+    r"(?:save|keep|leave|spare) (?:the|your|that|those|all the) (?P<saved>.+?) for (?:later|another|some other|next|tomorrow|when|someone|somebody|others|the others|a rainy|bedtime|\w+day)\b(?!.* and \w).*"
+    r"|leave (?:the|that|all the|your) (?P<left>(?:(?!\b(?:and|out|be|alone)\b)[^,.])+?) to (?:me|us|him|her|them|your|the|my|our|others|someone|somebody)\b.*"
+    r"|put (?:the|your|that|those) (?P<away>.+?) away(?: now)?"
     r"|give (?:the|your|that|all the|all that) (?P<rested>.+?) a (?:miss|rest|break|pass|skip)\b.*"
     r"|permission to (?P<asked>.+?) (?:is )?(?:denied|refused)"
     r"|(?:the |your |that )?(?P<over>.+?) (?:is|are) (?:so last \w+|old hat|history|(?:off|not on) the menu|not (?:wanted|needed|necessary|required|welcome)|unnecessary|denied|vetoed|beneath you|(?:a )?no go|for (?:another|some other) (?:day|time)|overrated)\b.*"
@@ -118,6 +135,21 @@ ASKED_AND_DENIED = re.compile(
     r"^(?P<what>(?!what\b)[^,.;!?]+)\?+ (?:no|nope|nah|negative|never|not today|not now|not again|wrong|hardly|forget it|no thanks|no thank you|no way)\b(?! ?\?)[,.;!: -]*(?P<rest>(?!the (?:left|right)\b).*)$"
 )
 """'Wave? No, bow.'"""
+YES_AND_NO = re.compile(
+    r"^(?P<rest>[^,;.]+?)(?<!for)(?<!head),? yes[,;.]* (?:and |but )?(?P<what>(?!in place|instead|for)[^,;.]+?)(?<!for),? no(?: please| thanks| thank you)?$"
+)
+"""'A wave yes, a hug no.'"""
+RATHER_THAN = re.compile(
+    r"^(?:i (?:would|should) (?:much )?(?:sooner|rather|prefer)(?: (?:it if |that )?you| to see(?: you)?| have(?: you)?)? )?"
+    r"(?P<rest>(?!no sooner|not so|it is|less)[^,;.]+?)(?<!rather)(?<!more)(?<!less)(?<!er) than (?P<what>(?:the|an?|your) [^,;.]+)$"
+)
+TAKEN_BACK = re.compile(
+    r"^(?P<what>(?!(?:yes|no)\b)(?!.* (?:and|then|while) )[^,.;:!?]+)[,.;:!]+ (?:(?:oh|ah|um|er|hmm|wait|sorry|oops)[,.]? )*(?:no(?:pe)?|nah)[,.;!]+ (?:(?:no|wait|sorry|please|listen|actually)[,.;!]+ )*"
+    r"(?:(?:not that(?: one)?|do not|never ?mind(?: that)?|scratch that|forget that|cancel that)[,.;!]+ )?(?:i (?:mean|meant|said) )?(?P<rest>(?!(?:yes|no|not|sorry|wait|listen|actually)\b)\w.+)$"
+)
+"""'Clap. No, don't. Wave.'"""
+INSTEAD = (SWAPPED, ASKED_AND_DENIED, TAKEN_BACK, YES_AND_NO, RATHER_THAN)
+"""Whole texts that deny one act and ask for another."""
 ANY_ARM_BUT = re.compile(
     r",? (?:with|using) (?:whichever|whatever|any|either) (?:hand|arm|one)(?: you (?:like|want|fancy|please|prefer))?,? "
     r"(?:(?:so|as|just as) long as it is not|but|except|other than) (?:the|your) (?P<side>left|right)(?: one| hand| arm)?"
@@ -129,7 +161,7 @@ SURELY_DENIES = re.compile(
 """Words after which even what is no known act is not to be done."""
 HAS_SIDE = re.compile(r"\b(?:left|right|both)\b")
 SAYS_NOTHING = re.compile(
-    r"(?:the|use the|with the|use) (?:other|opposite)(?: one| hand| arm| way| side| direction)?|instead|(?:and |but )?that is it|"
+    r"(?:nope|nah|no)?,? ?not that(?: one)?|(?:fine|okay|ok|alright|correction|not(?: again)?)|(?:the|use the|with the|use) (?:other|opposite)(?: one| hand| arm| way| side| direction)?|instead|(?:and |but )?that is it|"
     r"(?:(?:lord|god|goodness|dear) )?(?:no|oh|hey|well|ok|please)(?:,? (?:no|please|sorry))*|(?:will|would|can|could) you|silly|got it|thanks?|for \w+(?:'s)? sake|not (?:another|one more|a single) \w+(?: \w+){0,4}|"
     r"(?:you )?(?:just )?wait (?:until|till|for)\b.*|(?:no|nothing) (?:other|else|more)\b.*|leave it(?: at that| alone)?|(?:so )?not one(?: out)? (?:of|from) you"
 )

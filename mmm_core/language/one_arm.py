@@ -1,4 +1,4 @@
-"""The arm of successive commands that name it once: "raise your left hand, salute, and lower it again".
+"""The arm of commands that name it once: "raise your left hand, salute, and lower it again", "wipe your brow, left hand".
 
 A command without a side takes the side of the commands around it if they name only one side. The command must stand between two
 commands of that arm, or name a part of an arm ("bend the elbow", "make a fist") after a command of that arm.
@@ -14,6 +14,11 @@ from mmm_core.language.limbs import SOME_ARM, limbs_of
 _NAMED = re.compile(r"\b(left|right) (?:hand|arm|fist|palm|elbow|wrist|forearm|fingers?|fingertips|thumb)\b")
 _ANY_SIDE = re.compile(r"\b(?:left|right|both|other|one (?:hand|arm)|hands|arms)\b")
 _PART = re.compile(r"\b(?:the|your) (?=(?:elbow|wrist|palm|fist|forearm|fingers?|thumb|hand|arm)\b)")
+_NAMED_AFTER = re.compile(
+    r"^(?P<act>[^,.;:!]+)[,.;:!]+ (?:and )?(?!that is right\b)(?:only |just )?(?:(?:use|using|with|on|it is|that is) )?"
+    r"(?:only |just )?(?:the |your )?(?P<side>left|right)(?: (?:hand|arm|fist|one))?"
+    r"(?: only| please| this time)?(?P<rest>(?:[,.;:!].*)?)$"
+)
 _MAKES_A_FIST = re.compile(r"(?:make|form|clench|ball|close|open)\b.*\bfist\b(?: tight(?:ly)?)?$")
 
 
@@ -37,6 +42,18 @@ def of_one_arm(commands: Sequence[str]) -> list[str]:
         free = limbs_of(command) == SOME_ARM and not _ANY_SIDE.search(command)
         found.append(_with(command, side) if free and (is_between or is_part) else command)
     return found
+
+
+def with_hand_named_after(text: str) -> str:
+    """A text in lower case with a hand that stands after the only command, as words of that command.
+
+    >>> with_hand_named_after("wipe your brow, left hand"), with_hand_named_after("wave, left hand up")
+    ('wipe your brow with your left hand', 'wave, left hand up')
+    """
+    found = _NAMED_AFTER.match(text)
+    if found is None or _ANY_SIDE.search(found["act"] + found["rest"]) or limbs_of(found["act"]) != SOME_ARM:
+        return text
+    return f"{found['act']} with your {found['side']} hand{found['rest']}"
 
 
 def _with(command: str, side: str) -> str:

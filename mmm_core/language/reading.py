@@ -8,6 +8,7 @@ read manner (`manner`). A sentence without any of these is passed on unchanged. 
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from dataclasses import replace
 
 from mmm_core.language.alternatives import anything_but, otherwise
@@ -21,7 +22,7 @@ from mmm_core.language.denial import Denial, without_denial
 from mmm_core.language.ellipsis import completed, with_sides
 from mmm_core.language.limbs import SOME_ARM, limbs_of
 from mmm_core.language.manner import Manner, manner_of
-from mmm_core.language.one_arm import of_one_arm
+from mmm_core.language.one_arm import of_one_arm, with_hand_named_after
 from mmm_core.language.one_gesture import as_said, held_together
 from mmm_core.language.one_thing import of_one_thing
 from mmm_core.language.positions import in_said_order
@@ -90,13 +91,22 @@ def read(text: str, *, by_rules_alone: bool = False) -> Reading:
     notes: list[str] = []
     rest, hand = _for_all(rest)
     hand = hand or first_hand
+    rest = rest if hand else with_hand_named_after(rest)
     for clause in of_one_arm(commands_in_turn(of_one_thing(with_sides(rest)))):
         steps += _steps(clause + hand if hand and limbs_of(clause) == SOME_ARM else clause, notes)
     if _is_plain(text, said, steps):
         return Reading(text, ((replace(steps[0][0], text=normalised(text)),),), plain=True)
     if denial.denied:
-        steps = [tuple(_not_denied(c, denial) for c in step) for step in steps]
+        steps = _without_what_is_denied([tuple(_not_denied(c, denial) for c in step) for step in steps], denial.denied)
     return Reading(text, tuple(steps), _shown(denial.denied), tuple(notes))
+
+
+def _without_what_is_denied(
+    steps: list[tuple[PlainCommand, ...]], denied: Sequence[str]
+) -> list[tuple[PlainCommand, ...]]:
+    """Steps without commands that are denied in the same words: "wave, no, not wave, bow"; unchanged where nothing remains."""
+    kept = [tuple(c for c in step if c.text not in denied) for step in steps]
+    return [step for step in kept if step] or steps
 
 
 def _not_denied(command: PlainCommand, denial: Denial) -> PlainCommand:

@@ -54,3 +54,35 @@ def test_what_describes_a_pose_of_both_arms_stays_with_it() -> None:
     assert said("clap your hands, right hand on top") == "clap your hands, right hand on top"
     assert said("fold your arms, left arm on top") == "fold your arms, left arm on top"
     assert said("raise your hand and hold it up for two seconds") == "raise your right hand (held for 2 s)"
+
+
+@pytest.mark.parametrize(
+    ("text", "read_as"),
+    [
+        ("wipe your brow, left hand", "wipe your brow with your left hand"),
+        ("wave! Use the left one, please", "wave with your left hand"),
+        ("salute, only with your right", "salute with your right hand"),
+        ("stir the soup, left arm, 20 seconds", "stir the soup with your left hand (held for 20 s)"),
+        ("reach forward, dear, with your right hand", "reach forward with your right hand"),
+        # and what names another command or is no arm's
+        ("wave, then the left hand", "wave > wave with your left hand"),
+        ("punch, left, right", "punch with your left hand > punch with your right hand"),
+        ("wave, left hand up", "wave with your right hand + raise your left hand"),
+        ("look up, left hand on your hip", "look up + put your left hand on your hip"),
+        ("hand over your heart, that's right", "hand over your heart, that is right"),
+    ],
+)  # fmt: skip
+def test_a_hand_named_after_a_command_is_the_hand_of_it(text: str, read_as: str) -> None:
+    assert said(text) == read_as
+
+
+@pytest.mark.parametrize(
+    ("text", "read_as"),
+    [
+        ("nod. Slowly.", "nod (0.62 times as fast)"), ("wave. Very slowly, please. Then bow", "wave (0.55 times as fast) > bow"),
+        ("wave slowly, then quickly", "wave (0.62 times as fast) > wave (1.6 times as fast)"),
+        ("wave. Again, but slower", "wave > wave (0.62 times as fast)"),
+    ],
+)  # fmt: skip
+def test_words_of_manner_alone_are_those_of_the_command_before(text: str, read_as: str) -> None:
+    assert said(text) == read_as
