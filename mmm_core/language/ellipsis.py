@@ -84,6 +84,11 @@ def completed(clause: str, before: str) -> str | None:  # noqa: PLR0912  one bra
         return f"{whole} {counted['times']}"
     if (again := forms.AGAIN_BUT.match(clause)) and forms.ONLY_MANNER.match(again["how"]):
         clause = again["how"]
+    if (last := forms.MANNER_LAST.match(clause)) and forms.ONLY_MANNER.match(last["how"]):
+        whole = completed(last["rest"], manner_of(before)[0])
+        return None if whole is None else f"{whole} {forms.ADVERBS.get(last['how'], last['how'])}"
+    if (over := forms.OVER_A_SHOULDER.match(clause)) and forms.LOOKED.match(before):
+        return f"look {over['over']}"
     if forms.ONLY_MANNER.match(clause):
         return f"{manner_of(before)[0]} {forms.ADVERBS.get(clause, clause)}"
     if (first := forms.MANNER_FIRST.match(clause)) and (whole := completed(first["rest"], manner_of(before)[0])):

@@ -21,10 +21,10 @@ DIRECTION = re.compile(
 SIDED = re.compile(rf"\b(left|right)\b(?= {_LIMB}\b)|\b(?:the|your) (left|right)\b")
 _THE_SAME = r"(?:also |and |now )?(?:(?:do )?(?:the same|same|likewise|it|that|so|again|another|one|another one)(?: thing)?(?: again)? )?"
 ONLY_SIDE = re.compile(
-    rf"^{_THE_SAME}(?:(?:just|only) )?(?:with|using|on|for|by|use|over)? ?(?:the |your )?(?P<side>left|right)(?: (?P<limb>{_LIMB}))?(?: (?:too|as well|again|instead|alone))?$"
+    rf"^{_THE_SAME}(?:(?:just|only) )?(?:with|using|on|for|by|use|over)? ?(?:the |your )?(?P<side>left|right)(?: (?P<limb>{_LIMB}))?(?: (?:too|as well|again|instead|alone|does (?:the same|likewise|it too|so too|that too)))?$"
 )
 OTHER_ONE = re.compile(
-    rf"^{_THE_SAME}(?:(?:with|using|on|to|in|for|by|use|your|at) )*(?:the |your )?(?:other|opposite|second(?= one))(?: (?:way|direction|{_LIMB}))?(?: (?:too|as well|round|around))?$|^vice versa$|^(?:switch|swap|change)(?: sides| hands| arms| over)?$"
+    rf"^{_THE_SAME}(?:(?:with|using|on|to|in|for|by|use|your|at) )*(?:the |your )?(?:other|opposite|second(?= one))(?: (?:way|direction|{_LIMB}))?(?: (?:too|as well|round|around|does (?:the same|likewise|it too|so too|that too)))?$|^vice versa$|^(?:switch|swap|change)(?: sides?| hands?| arms?| over)?$"
 )
 ADVERBS = {"big": "with big movements", "bigger": "with big movements", "small": "with small movements", "smaller": "with small movements",
             "large": "with big movements", "larger": "with big movements", "wide": "with big movements", "wider": "with big movements"}  # fmt: skip
@@ -42,6 +42,10 @@ ONLY_MANNER = re.compile(
 MANNER_FIRST = re.compile(
     r"^(?P<how>(?:very |really )?(?:slowly|quickly|fast|gently|briskly|rapidly)|a (?:lot|little|bit)|slightly|way|far|deeply) (?P<rest>.+)$"
 )
+MANNER_LAST = re.compile(r"^(?P<rest>.+?),? (?:but|only|just)(?: a (?:bit|little|lot)| much)? (?P<how>\w+)$")
+"""'The other one, but slower.'"""
+OVER_A_SHOULDER = re.compile(r"^(?:back )?(?P<over>over (?:your|the) (?:left|right) shoulder)$")
+LOOKED = re.compile(r"^(?:look|glance|turn your head|peek)\b")
 AGAIN_BUT = re.compile(
     r"^(?:do (?:it|that) |and |then )*(?:again|once more|the same|one more)(?: again)?,? (?:but |only |and )*(?P<how>.+)$"
 )
@@ -60,7 +64,7 @@ WITH_SIDE = re.compile(r"\bwith (?:the |your )?(?:left|right)$")
 ONE_OF_TWO = re.compile(r"\b(?:your |the )(?:left |right )(?P<part>eye|ear|shoulder|knee|elbow|cheek|side|biceps?)\b")
 BOTH_ARMS = re.compile(r"\bboth (?:your )?(?P<limb>hand|arm|fist)s\b")
 ONLY_TIMES = re.compile(
-    r"^(?:again )?(?P<times>once|twice|thrice|\w+ times)(?: more| again)?$|^(?P<number>\w+) (?:more|further)(?: times?)?$"
+    r"^(?:again )?(?P<times>once|twice|thrice|\w+ times)(?: more| again)?$|^(?:(?:give|do|make|show)(?: (?:me|us|them|him|her))? )?(?P<number>\w+) (?:more|further)(?: times?)?$"
 )
 COUNTED = re.compile(
     r"^(?P<times>once|twice|thrice|(?:one|two|three|four|five|six|seven|eight|\d) times?) (?P<rest>(?:with|using|on|to) .+|left|right|up|down|forwards?|back(?:wards?)?)$"

@@ -86,3 +86,19 @@ def test_a_hand_named_after_a_command_is_the_hand_of_it(text: str, read_as: str)
 )  # fmt: skip
 def test_words_of_manner_alone_are_those_of_the_command_before(text: str, read_as: str) -> None:
     assert said(text) == read_as
+
+
+@pytest.mark.parametrize(
+    ("text", "read_as"),
+    [
+        ("wave with your right hand, then the other hand does the same",
+         "wave with your right hand > wave with your left hand"),
+        ("jab with the left, then the other one but slower",
+         "jab with your left hand > jab with your right hand (0.62 times as fast)"),
+        ("clap twice, then give me four more", "clap twice > clap four times"),
+        ("look right, then over your left shoulder", "look right > look back over your left shoulder"),
+        ("play a bit of guitar", "play a bit of guitar"), ("a bit of a nod, please", "a nod (0.6 times as large)"),
+    ],
+)  # fmt: skip
+def test_what_a_command_leaves_out_is_that_of_the_one_before(text: str, read_as: str) -> None:
+    assert said(text) == read_as
