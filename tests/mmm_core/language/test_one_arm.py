@@ -96,7 +96,7 @@ def test_words_of_manner_alone_are_those_of_the_command_before(text: str, read_a
         ("jab with the left, then the other one but slower",
          "jab with your left hand > jab with your right hand (0.62 times as fast)"),
         ("clap twice, then give me four more", "clap twice > clap four times"),
-        ("look right, then over your left shoulder", "look right > look back over your left shoulder"),
+        ("look right, then over your left shoulder", "look to the right > look back over your left shoulder"),
         ("play a bit of guitar", "play a bit of guitar"), ("a bit of a nod, please", "a nod (0.6 times as large)"),
     ],
 )  # fmt: skip
