@@ -56,7 +56,7 @@ LEAVE = re.compile(
     rf"{_any('left alone')}\b,?\s*(?:and\s+)?"
 )
 RESTS = re.compile(
-    rf"(?:,?\s*(?:and|but|while)\s+)?\b(?:your |the )(?P<side>left|right) (?:hand|arm) {_any('rests')}"
+    rf"(?:[,;:.]?\s*(?:and|but|while)\s+)?\b(?:your |the )(?P<side>left|right)(?: (?:hand|arm|one))? {_any('rests')}"
     r"(?=\s*(?:$|,|;|and\b|while\b)),?\s*(?:(?:and|while)\s+)?"
 )
 """'The left hand rests, wave with the right.'"""
