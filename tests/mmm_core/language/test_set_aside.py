@@ -47,7 +47,7 @@ def said(text: str) -> str:
         ("spare me the guitar and nod", "nod | not: the guitar"),
         ("fine, don't clap then", " | not: clap then"),
         ("rather than hug, high-five", "high-five | not: hug"),
-        ("stick your left arm out, the right one stays put", "stick your left arm out | not: the right arm"),
+        ("stick your left arm out, the right one stays put", "stick your left arm out"),
         ("punch, the left takes a break", "punch with your right hand | not: the left arm"),
         # and what looks like it
         ("pretend to knock, wait, and nod", "pretend to knock; nod"),
