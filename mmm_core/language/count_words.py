@@ -24,16 +24,30 @@ _NOT_STROKES = (
     "s|secs?|seconds?|minutes?|degrees?|met(?:er|re)s?|cm|inch(?:es)?|people|persons?|things?|others?|us|of|or|to|and|"
     "balls|oranges|plates|pins|hours?|days?|weeks?|months?|years?|beats?|heartbeats?|counts?|breaths?|bars?|measures?"
 )
+_OF_A_LIMB = (
+    "bumps|pumps|circles|shakes|rolls|curls|claps|knocks|pats|taps|punches|waves|turns|raises|lifts|tilts|nods|swings|shrugs|"
+    "strokes|chops|wobbles"
+)
+"""Strokes that are named after the limb: "two head shakes"."""
+_BETWEEN = "for|with|at|in|on|by|from|your|the|my|his|her|our|then|more|times?|x"
+"""Words that never stand between a number and its strokes."""
 _ONCE = re.compile(
     rf"(?<!\bat )\b({'|'.join(ADVERBS)})\b(?! (?:more|again|upon|you|he|she|it|that|this|the|i|they|we)\b)",
     re.IGNORECASE,
 )
-_SINGLE = re.compile(r"\b(?:one time|(?:a|one) single|(?:just|only) one)\b", re.IGNORECASE)
+_SINGLE = re.compile(
+    r"\b(?:one time|(?:a|one) single|(?:just|only) one)\b|"
+    rf"\bone (?:(?!(?:{_NOT_STROKES}|and|with|more|last|after|by|at|in|on)\b)[a-z-]+ ){{0,2}}"
+    r"(?:(?:fist|head|arm|karate|high) )?"
+    r"(?:bump|pump|shake|five|nod|clap|bow|knock|punch|jab|hook|uppercut|tap|pat|chop|circle|shrug|throw|kiss)\b",
+    re.IGNORECASE,
+)
 _TIMES = re.compile(rf"\b{_NUMBER}\s*(?:times|x)\b", re.IGNORECASE)
 _THINGS = re.compile(
-    r"(?<!\bfor )(?<!\bone )(?<!give me )(?<!gimme )(?<!the )(?<!those )(?<!these )(?<!your )(?<!my )(?<!all )(?<!at )"
-    r"(?<!to )(?<!of )(?<!like )(?<!\bon )(?<!\bhad )(?<!\bhas )(?<!\bhave )(?<!\bthan )(?<!\bfrom )(?<!\bbetween )"
-    rf"\b{_NUMBER}\s+(?:(?!(?:{_NOT_STROKES})\b)[a-z-]+\s+)?(?!(?:{_NOT_STROKES})\b)[a-z-]+s\b",
+    r"(?<!\bfor )(?<!\bone )(?<!\bhigh )(?<!the )(?<!those )(?<!these )(?<!your )(?<!my )(?<!all )(?<!at )"
+    r"(?<!to )(?<!of )(?<!(?<!would )like )(?<!\bon )(?<!\bhad )(?<!\bhas )(?<!\bhave )(?<!\bthan )(?<!\bfrom )(?<!\bbetween )"
+    rf"\b{_NUMBER}\s+(?:(?!(?:{_NOT_STROKES})\b(?! (?:{_OF_A_LIMB})\b)|(?:{_BETWEEN})\b)[a-z-]+\s+){{0,2}}"
+    rf"(?!(?:{_NOT_STROKES})\b)(?:high five|[a-z-]+s)\b",
     re.IGNORECASE,
 )
 
