@@ -23,7 +23,7 @@ from mmm_core.language.gesture_steps import NO_GESTURE, is_all_gestures
 from mmm_core.language.hard_phrases import without_hard_phrases
 from mmm_core.language.joined import with_parted_commands
 from mmm_core.language.manner_words import likely_manners
-from mmm_core.language.parsed_reading import keeps_denials, reading_in, steps_asked
+from mmm_core.language.parsed_reading import denies_itself, keeps_denials, reading_in, steps_asked
 from mmm_core.language.plain_gestures import (
     OUTSIDE,
     SURELY_DENIED,
@@ -142,8 +142,17 @@ class SentenceReader:
             replace(one, reading=said_at_once(without_repeats(reading)))
             for one, reading in zip(found, finished, strict=True)
         )
+        candidates = self._without_contradictions(candidates)
         candidates, outside = self._parsed(candidates, text, states)
         return Ways(candidates, self._models.classes(commands_of(candidates)), states.meant, outside)
+
+    def _without_contradictions(self, candidates: list[Candidate]) -> list[Candidate]:
+        """Candidates without those that ask for what they deny; all of them where nothing else remains."""
+        denied = list(dict.fromkeys(chain.from_iterable(one.reading.denied for one in candidates)))
+        if not denied:
+            return candidates
+        acts, meant = self._models.classes(denied), self._models.classes(commands_of(candidates))
+        return [one for one in candidates if not denies_itself(one.reading, meant, acts)] or candidates
 
     def _parsed(self, candidates: list[Candidate], text: str, states: Encoded) -> tuple[list[Candidate], float]:
         """Candidates and those that the parser proposes, each with its probability by the parser; and that of no gesture."""

@@ -12,6 +12,7 @@ from mmm_core.language.commands import MOST_AT_ONCE, MOST_STEPS, PlainCommand, R
 from mmm_core.language.count_words import count_asked
 from mmm_core.language.gesture_steps import LEFT, RIGHT, ArmGesture, GestureSteps, arm_of, plainly, with_own_arm
 from mmm_core.language.limbs import limbs_of
+from mmm_core.language.manner import manner_of
 from mmm_core.language.plain_gestures import OUTSIDE, Meant, family_of, is_gesture, is_sure_of
 
 
@@ -77,6 +78,22 @@ def keeps_denials(
         if any(_may_be(one, act) for one in flat for act in denied):
             return False
     return True
+
+
+def denies_itself(reading: Reading, meant: Mapping[str, Meant], acts: Mapping[str, Meant]) -> bool:
+    """Whether a reading asks for several gestures, some of which it surely denies: "look through binoculars + yawn", not "yawning".
+
+    What is the only gesture may be denied in words alone: "why aren't you celebrating? Celebrate!". An act that is denied with a
+    number or a manner may be asked for with another: "don't clap twice, clap once".
+    """
+    denied = [
+        ArmGesture(arm_of(words, acts[words].name), acts[words].name)
+        for words in reading.denied
+        if is_sure_of(acts[words]) and count_asked(words) is None and manner_of(words)[1].plain
+    ]
+    flat = [one for step in steps_asked(reading, meant) for one in step]
+    contrary = [one for one in flat if any(_may_be(one, act) for act in denied)]
+    return 0 < len(contrary) < len(flat)
 
 
 def _may_be(one: ArmGesture, denied: ArmGesture) -> bool:

@@ -32,7 +32,8 @@ _MOST_LEFT_OUT = 4
 """Words that a sentence has beyond those of its command, at most, without being looked at for words of manner."""
 
 _DIVIDED_WRONGLY = re.compile(
-    r"\b(?:i mean(?:t)?|i said|wait|sorry|oops|scratch that|actually|make that|rather|er|erm|um|uh)\b|[,.;:-] ?no\b|"
+    r"\b(?:i mean(?:t)?|i said|wait|sorry|oops|scratch that|actually|make that|rather|er|erm|um|uh)\b|"
+    r"[,.;:-] ?no\b(?=\W*$|[,.;:!]| (?:wait|sorry|i|not|the|your|to|left|right|make|that|it)\b)|"
     r"\b(?:while|whilst|as you|at the same time|together|before|after|prior|having|until)\b"
 )
 """Words of correction, of doing things at once and of order.

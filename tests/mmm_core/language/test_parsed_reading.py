@@ -7,7 +7,7 @@ import pytest
 from mmm_core.language.commands import PlainCommand, Reading
 from mmm_core.language.gesture_steps import ANY_ARM, BOTH, LEFT, RIGHT, ArmGesture
 from mmm_core.language.manner import Manner
-from mmm_core.language.parsed_reading import keeps_denials, reading_in, steps_asked
+from mmm_core.language.parsed_reading import denies_itself, keeps_denials, reading_in, steps_asked
 from mmm_core.language.plain_gestures import OUTSIDE, SEVERAL, Meant
 
 MEANT = {
@@ -101,3 +101,25 @@ def test_what_is_denied_stays_so_and_all_is_where_nothing_is_asked_for() -> None
     nothing = reading_in((), "text", [READ], MEANT)
     assert nothing is not None
     assert (nothing.steps, nothing.denied) == ((), ("wave with your left hand twice", "bow"))
+
+
+@pytest.mark.parametrize(
+    ("commands", "denied", "contradicts"),
+    [
+        (["bow", "look up"], "look up", True),
+        (["bow", "look up"], "sing a song", False),
+        (["look up"], "look up", False),  # "why don't you look up? Look up!"
+        (["bow", "raise your right hand"], "raise your left hand", False),
+        (["bow", "wave with your left hand twice"], "wave three times", False),
+        (["bow", "look up"], "look up slowly", False),
+    ],
+)
+def test_a_reading_of_several_commands_may_deny_none_of_them(
+    commands: list[str], denied: str, contradicts: bool
+) -> None:
+    acts = {
+        "look up": Meant("look/up", 0.9), "look up slowly": Meant("look/up", 0.9), "sing a song": Meant(OUTSIDE, 0.9),
+        "raise your left hand": Meant("raise", 1.0), "wave three times": Meant("wave", 0.9),
+    }  # fmt: skip
+    reading = Reading("text", tuple((PlainCommand(words),) for words in commands), (denied,))
+    assert denies_itself(reading, MEANT, acts) is contradicts

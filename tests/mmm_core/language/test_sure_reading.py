@@ -22,6 +22,7 @@ from mmm_core.language.sure_reading import needs_networks
         "do not wave with your right hand",
         "don't bow or clap",
         "do not shrug before I say so",
+        "cross your arms. No shrugging",
     ],
 )
 def test_the_rules_alone_read_what_they_read_surely(text: str) -> None:
