@@ -61,11 +61,11 @@ def _first_seen(tried: Sequence[Stretch], is_seen: Callable[[Stretch], bool]) ->
     """The first of some stretches whose acts are seen, found by halving as if all after it were seen too; None if none is found."""
     if not tried or is_seen(tried[0]):
         return tried[0] if tried else None
-    lost, seen = 0, len(tried)
-    while seen - lost > 1:
-        middle = (lost + seen) // 2
-        lost, seen = (lost, middle) if is_seen(tried[middle]) else (middle, seen)
-    return tried[seen] if seen < len(tried) else None
+    too_large, kept = 0, len(tried)
+    while kept - too_large > 1:
+        middle = (too_large + kept) // 2
+        too_large, kept = (too_large, middle) if is_seen(tried[middle]) else (middle, kept)
+    return tried[kept] if kept < len(tried) else None
 
 
 def _scenes(stretches: Sequence[Stretch], words: Sequence[str]) -> list[Scene]:

@@ -97,7 +97,7 @@ def performed(features: NDArray[np.float32], stretches: Sequence[Stretch]) -> tu
     for stretch in stretches:
         part = slice(stretch.start, stretch.end)
         motion = _motion(features[part])
-        wanted_m = stretch.way * reach_m(local[part])
+        wanted_m = stretch.way * reach_m(local[part]) if stretch.way > 1.0 else 0.0
         if stretch.size != 1.0:
             local[part] = sized(local[part], local[0], motion, stretch.size, _ramp(stretch, len(features)))
         if stretch.trunk_pitch_rad or stretch.head_pitch_rad:
@@ -146,7 +146,7 @@ def _features(yaw: Array, root: Array, local: Array, where: Array, swings: Seque
 
 def _wide_way(local: Array, motion: Motion, stretch: Stretch, wanted_m: float) -> tuple[int, int] | None:
     """First and last frame of a way that is to be wide; None where the hands go far enough, or repeat a stroke."""
-    if stretch.way <= 1.0 or is_cyclic(strokes_of(motion)) or reach_m(local) >= _ENOUGH * wanted_m:
+    if stretch.way <= 1.0 or reach_m(local) >= _ENOUGH * wanted_m or is_cyclic(strokes_of(motion)):
         return None
     return way_of(local)
 

@@ -25,6 +25,8 @@ _BEGUN, _THERE = 0.1, 0.9
 """Shares of its distance between which a hand is on its way."""
 _TOGETHER_M = 0.25
 """Hands that are nearer to each other than this for most of their way carry one thing."""
+_SHORTEST_FRAMES = 2
+"""Frames of the shortest way that is widened."""
 _LEAST_GAIN = 1.05
 """Factor by which the hands must come farther than before for the wide way to be taken."""
 
@@ -39,7 +41,7 @@ def way_of(local: Array) -> tuple[int, int] | None:
         return None
     there = max(int(np.argmax(away[:, i] >= _THERE * far[i])) for i in acting)
     begun = min(int(np.flatnonzero(away[: there + 1, i] <= _BEGUN * far[i])[-1]) for i in acting)
-    return None if there - begun < 2 else (begun, there)
+    return None if there - begun < _SHORTEST_FRAMES else (begun, there)
 
 
 def reach_m(local: Array) -> float:
@@ -58,6 +60,8 @@ def with_wide_way(local: Array, way: tuple[int, int], wanted_m: float) -> Array:
     hands = _hands(local)
     away = np.linalg.norm(hands - hands[0], axis=-1)
     acting = _acting(away.max(0))
+    if not acting or way[1] - way[0] < _SHORTEST_FRAMES:
+        return local
     apart = np.linalg.norm(hands[way[0] : way[1] + 1, 0] - hands[way[0] : way[1] + 1, 1], axis=-1)
     together = len(acting) == 2 and float(np.median(apart)) < _TOGETHER_M
     best, farthest = local, _LEAST_GAIN * float(away.max())

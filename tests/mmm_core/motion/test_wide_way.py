@@ -61,6 +61,15 @@ def test_what_has_no_way_or_repeats_a_stroke_stays_as_it_is(text: str) -> None:
     np.testing.assert_array_equal(wide, plain)
 
 
+@pytest.mark.parametrize(("tempo", "hold_s"), [(0.5, 0.0), (2.5, 0.0), (1.0, 3.0), (1.6, 1.0)])
+def test_a_wide_way_goes_with_tempo_and_hold(tempo: float, hold_s: float) -> None:
+    for text in ("yawn behind your hand", "open your arms wide", "throw a ball"):
+        features = features_of(text)
+        wide, ends = performed(features, [Stretch(0, len(features), tempo=tempo, hold_s=hold_s, way=1.4)])
+        assert np.isfinite(wide).all() and ends == [len(wide)]
+        assert farthest_m(joints_of(wide)) >= 0.99 * farthest_m(joints_of(features)), text
+
+
 def test_of_two_commands_one_alone_gets_a_wide_way() -> None:
     rows = [features_of("yawn behind your hand"), features_of("put your hand over your mouth")]
     features = np.concatenate(rows)
