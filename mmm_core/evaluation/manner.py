@@ -5,7 +5,6 @@ from __future__ import annotations
 from itertools import pairwise
 
 import numpy as np
-from scipy.ndimage import uniform_filter1d
 
 from mmm_core.corpus.families import FAMILIES
 from mmm_core.corpus.heldout import Command
@@ -14,7 +13,7 @@ from mmm_core.language.inflection import times
 from mmm_core.motion.drawn_circles import drawn_circle, farther_hand, width_m
 from mmm_core.motion.motion import Motion
 from mmm_core.motion.posture_features import posture_features
-from mmm_core.motion.repetitions import body_path, strokes_of
+from mmm_core.motion.repetitions import Strokes, about_mean, body_path, strokes_of
 from mmm_core.motion.sizing import is_cyclic
 from mmm_core.recognition import checks
 
@@ -74,19 +73,16 @@ def _cycle_ranges_m(motion: Motion, plain: Motion) -> tuple[float, float]:
     found = strokes_of(plain)
     if found is None or not is_cyclic(found):
         return 0.0, 0.0
-    period = max(3, int(np.median(np.diff(found.frames))))
-    first, last = found.frames[0], found.frames[-1]
-    return _range_about_mean_m(motion, plain, first, last, period), _range_about_mean_m(
-        plain, plain, first, last, period
-    )
+    swings = [_swing_m(shown, plain, found) for shown in (motion, plain)]
+    return swings[0], swings[1]
 
 
-def _range_about_mean_m(motion: Motion, plain: Motion, first: int, last: int, period: int) -> float:
-    """Range of the farther-swinging hand about its mean over a period, between two frames of the plain motion, in time."""
-    wrists = motion.joints_m[:, 20:] - motion.joints_m[:, [9]]
-    away = wrists - uniform_filter1d(wrists, period, axis=0, mode="nearest")
+def _swing_m(motion: Motion, plain: Motion, strokes: Strokes) -> float:
+    """Range of the farther-swinging hand about its mean over a period, while the plain motion makes its strokes."""
+    away = about_mean(motion.joints_m[:, 20:] - motion.joints_m[:, [9]], strokes.period_frames)
     per_frame = len(motion.joints_m) / len(plain.joints_m)
-    return float(np.ptp(away[round(first * per_frame) : round(last * per_frame) + 1], axis=0).max())
+    first, last = (round(strokes.frames[i] * per_frame) for i in (0, -1))
+    return float(np.ptp(away[first : last + 1], axis=0).max())
 
 
 def _circle_widths_m(motion: Motion, plain: Motion) -> tuple[float, float]:

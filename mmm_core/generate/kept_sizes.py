@@ -58,7 +58,7 @@ def with_kept_sizes(
 
 
 def _first_seen(tried: Sequence[Stretch], is_seen: Callable[[Stretch], bool]) -> Stretch | None:
-    """The first of some stretches whose acts are seen, found by halving as if all after it were seen too; None if none is found."""
+    """The first of some stretches whose acts are seen; None where there is none. It is found by halving."""
     if not tried or is_seen(tried[0]):
         return tried[0] if tried else None
     too_large, kept = 0, len(tried)

@@ -132,7 +132,7 @@ def _of_whole_text(text: str) -> Denial | None:
 
 
 def _forbidden(clause: str) -> str:
-    """What a clause forbids or sets aside as a whole: "the bow is banned", "save the bow for later"; "" for nothing."""
+    """The act that a clause forbids ("the bow is banned") or sets aside ("save the bow for later"); "" where it does neither."""
     found = forms.FORBIDDEN.match(clause) or forms.SET_ASIDE.match(clause)
     return next(filter(None, found.groups()), "") if found else ""
 

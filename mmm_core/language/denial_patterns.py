@@ -118,13 +118,13 @@ FORBIDDEN = re.compile(
 )
 SET_ASIDE = re.compile(
     r"^(?:please |(?:and|but|so|then) |(?:let us|we will|we shall|you can|you may) )*(?:"
-    r"(?:save|keep|leave|spare) (?:the|your|that|those|all the) (?P<saved>.+?) for (?:later|another|some other|next|tomorrow|when|someone|somebody|others|the others|a rainy|bedtime|\w+day)\b(?!.* and \w).*"
-    r"|leave (?:the|that|all the|your) (?P<left>(?:(?!\b(?:and|out|be|alone)\b)[^,.])+?) to (?:me|us|him|her|them|your|the|my|our|others|someone|somebody)\b.*"
-    r"|put (?:the|your|that|those) (?P<away>.+?) away(?: now)?"
-    r"|give (?:the|your|that|all the|all that) (?P<rested>.+?) a (?:miss|rest|break|pass|skip)\b.*"
-    r"|permission to (?P<asked>.+?) (?:is )?(?:denied|refused)"
-    r"|(?:the |your |that )?(?P<over>.+?) (?:is|are) (?:so last \w+|old hat|history|(?:off|not on) the menu|not (?:wanted|needed|necessary|required|welcome)|unnecessary|denied|vetoed|beneath you|(?:a )?no go|for (?:another|some other) (?:day|time)|overrated)\b.*"
-    r"|(?:the |your |that )?(?P<waits>.+?) (?:can|must|should|will have to|has to|have to) wait\b(?! (?:for|until|till)\b).*)$"
+    r"(?:save|keep|leave|spare) (?:the|your|that|those|all the) (.+?) for (?:later|another|some other|next|tomorrow|when|someone|somebody|others|the others|a rainy|bedtime|\w+day)\b(?!.* and \w).*"
+    r"|leave (?:the|that|all the|your) ((?:(?!\b(?:and|out|be|alone)\b)[^,.])+?) to (?:me|us|him|her|them|your|the|my|our|others|someone|somebody)\b.*"
+    r"|put (?:the|your|that|those) (.+?) away(?: now)?"
+    r"|give (?:the|your|that|all the|all that) (.+?) a (?:miss|rest|break|pass|skip)\b.*"
+    r"|permission to (.+?) (?:is )?(?:denied|refused)"
+    r"|(?:the |your |that )?(.+?) (?:is|are) (?:so last \w+|old hat|history|(?:off|not on) the menu|not (?:wanted|needed|necessary|required|welcome)|unnecessary|denied|vetoed|beneath you|(?:a )?no go|for (?:another|some other) (?:day|time)|overrated)\b.*"
+    r"|(?:the |your |that )?(.+?) (?:can|must|should|will have to|has to|have to) wait\b(?! (?:for|until|till)\b).*)$"
 )
 """'Save the bow for later', 'give the drums a rest', 'the bow can wait'."""
 SWAPPED = re.compile(

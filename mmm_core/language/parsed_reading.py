@@ -81,7 +81,7 @@ def keeps_denials(
 
 
 def denies_itself(reading: Reading, meant: Mapping[str, Meant], acts: Mapping[str, Meant]) -> bool:
-    """Whether a reading asks for several gestures, some of which it surely denies: "look through binoculars + yawn", not "yawning".
+    """Whether a reading surely denies one of its several gestures: it asks to nod and yawn, and denies "yawning".
 
     What is the only gesture may be denied in words alone: "why aren't you celebrating? Celebrate!". An act that is denied with a
     number or a manner may be asked for with another: "don't clap twice, clap once".

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.ndimage import uniform_filter1d
 
 from mmm_core.motion.motion import Motion
 from mmm_core.motion.posture_features import posture_features
@@ -46,6 +47,11 @@ class Strokes:
     range_m: float
     misfit: float
 
+    @property
+    def period_frames(self) -> int:
+        """Frames from stroke to stroke, the median; of two strokes at least."""
+        return int(np.median(np.diff(self.frames)))
+
     def apart(self, i: int, j: int) -> float:
         """Distance of the body between frames i and j, as a share of a cycle's range."""
         return float(np.linalg.norm(self.path[i] - self.path[j])) / self.range_m
@@ -64,6 +70,11 @@ def strokes_of(motion: Motion) -> Strokes | None:
     along = np.clip(along, low - 0.3 * (high - low), high + 0.3 * (high - low))
     up, down = (peaks_beyond(sign * along, TURN_SHARE * (high - low)) for sign in (1, -1))
     return Strokes(path, min(up, down, key=len), len(up) == len(down), range_m, misfit)
+
+
+def about_mean(path: Array, period_frames: int) -> Array:
+    """(T, ...) path from its mean over one period: what repeats, without what leads to it."""
+    return np.asarray(path - uniform_filter1d(path, max(3, period_frames), axis=0, mode="nearest"))
 
 
 def body_path(motion: Motion) -> Array:

@@ -14,7 +14,7 @@ from scipy.spatial.transform import Rotation
 
 from mmm_core.motion.drawn_circles import drawn_circle, farther_hand, width_m
 from mmm_core.motion.motion import Motion
-from mmm_core.motion.repetitions import Strokes, strokes_of
+from mmm_core.motion.repetitions import Strokes, about_mean, strokes_of
 from mmm_core.motion.skeleton import Array, forward_kinematics, from_six_d, six_d
 
 _TRUNK_HEAD = (3, 6, 9, 12, 15)
@@ -98,7 +98,7 @@ def sized(local: Array, rest: Array, motion: Motion, size: float, ramp: Array) -
 def _act(motion: Motion) -> _Act:
     strokes = strokes_of(motion)
     if strokes is not None and is_cyclic(strokes):
-        return _Act(period=int(np.median(np.diff(strokes.frames))))
+        return _Act(period=strokes.period_frames)
     return _Act(circle=drawn_circle(farther_hand(motion.joints_m)))
 
 
@@ -130,8 +130,7 @@ def _way_m(local: Array, act: _Act) -> float:
     if act.circle is not None:
         return width_m(farther_hand(joints)[act.circle[0] : act.circle[1] + 1])
     if act.period:
-        away = wrists - uniform_filter1d(wrists, max(3, act.period), axis=0, mode="nearest")
-        return float(np.ptp(away, axis=0).max())
+        return float(np.ptp(about_mean(wrists, act.period), axis=0).max())
     return float(np.linalg.norm(wrists - wrists[0], axis=-1).max())
 
 

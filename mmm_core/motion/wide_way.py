@@ -16,7 +16,7 @@ _ARMS = ((16, 18, 20, 1.0), (17, 19, 21, -1.0))
 _WIDE = ((0.85, 0.15, 0.4), (0.8, 0.5, 0.35), (0.6, 0.8, 0.25), (0.3, 0.95, 0.1))
 """Directions (outward, up, forward) of an arm that swings out, lowest first, in the frame of the chest."""
 _WIDE_TOGETHER = ((-0.33, 0.2, 0.92), (-0.33, 0.6, 0.73), (-0.33, 0.9, 0.3))
-"""The same of arms whose hands carry one thing."""
+"""Directions of two arms that carry one thing, lowest first, as in `_WIDE`."""
 _SHARES = (0.6, 0.8, 1.0)
 """Shares of the turn to a wide direction that are tried in turn."""
 _ACTS, _MOVES_M = 0.6, 0.25

@@ -6,14 +6,8 @@ import pytest
 
 from mmm_core.language.context import InContext, conversation
 from mmm_core.language.denial import without_denial
-from mmm_core.language.reading import read
 from mmm_core.language.spelling import mended
-
-
-def said(text: str) -> str:
-    """The commands that are read and what is denied, as one line: "wave | not: bow"."""
-    reading = read(text)
-    return "; ".join(reading.sentences) + (f" | not: {', '.join(reading.denied)}" if reading.denied else "")
+from tests.support.readings import said
 
 
 @pytest.mark.parametrize(
