@@ -39,6 +39,7 @@ from mmm_core.language.positions import in_said_order
 from mmm_core.language.reading import read
 from mmm_core.language.said_at_once import said_at_once, without_repeats
 from mmm_core.language.spelling import mended
+from mmm_core.language.stroke_numbers import with_said_number
 from mmm_core.language.sure_reading import is_sure, needs_networks, needs_tags, unknown_commands
 from mmm_core.language.tagged_manner import manner_phrases, with_left_manner, with_likely_manner, with_plain_manner
 from mmm_core.language.tagged_reading import can_be_read, reading_of, without_splits
@@ -80,7 +81,7 @@ class SentenceReader:
 
     def read(self, text: str) -> Reading:
         """The commands of a text."""
-        return without_hard_phrases(text, self._read(text))
+        return without_hard_phrases(text, with_said_number(self._read(text)))
 
     def _read(self, text: str) -> Reading:
         by_rules = read(text)

@@ -18,21 +18,21 @@ TIMES = rf"(?:(?:{'|'.join(NUMBERS)})(?: times?|x)|a single time|{'|'.join(ADVER
 """Pattern of a number of times, for tables."""
 SAID_TIMES = re.compile(rf"\b{TIMES}")
 """A number of times in a command in lower case: "three times in a row", "2x", "once"."""
-_NUMBER = rf"({'|'.join(NUMBERS)})"
+_NUMBER = rf"(?<![-.])({'|'.join(NUMBERS)})(?! (?:hundred|thousand)\b)"
 _NOT_STROKES = (
     "arms?|hands?|fists?|palms?|fingers?|thumbs?|eyes?|ears?|elbows?|shoulders?|wrists?|knees?|legs?|feet|foot|heads?|sides?|"
     "s|secs?|seconds?|minutes?|degrees?|met(?:er|re)s?|cm|inch(?:es)?|people|persons?|things?|others?|us|of|or|to|and|"
-    "balls|oranges|plates|pins|hours?|days?|weeks?|months?|years?|beats?|heartbeats?|counts?|breaths?|bars?|measures?"
+    "balls|oranges|plates|pins|hours?|days?|weeks?|months?|years?|beats?|heartbeats?|counts?|bars?|measures?"
 )
 _OF_A_LIMB = (
     "bumps|pumps|circles|shakes|rolls|curls|claps|knocks|pats|taps|punches|waves|turns|raises|lifts|tilts|nods|swings|shrugs|"
     "strokes|chops|wobbles"
 )
 """Strokes that are named after the limb: "two head shakes"."""
-_BETWEEN = "for|with|at|in|on|by|from|your|the|my|his|her|our|then|more|times?|x"
+_BETWEEN = "for|with|at|in|on|by|from|your|the|my|his|her|our|then|times?|x"
 """Words that never stand between a number and its strokes."""
 _ONCE = re.compile(
-    rf"(?<!\bat )\b({'|'.join(ADVERBS)})\b(?! (?:more|again|upon|you|he|she|it|that|this|the|i|they|we)\b)",
+    r"(?<!\bat )\b(once(?! more)|twice|thrice)\b(?! (?:again|upon|you|he|she|it|that|this|the|i|they|we)\b)",
     re.IGNORECASE,
 )
 _SINGLE = re.compile(
@@ -44,7 +44,7 @@ _SINGLE = re.compile(
 )
 _TIMES = re.compile(rf"\b{_NUMBER}\s*(?:times|x)\b", re.IGNORECASE)
 _THINGS = re.compile(
-    r"(?<!\bfor )(?<!\bone )(?<!\bhigh )(?<!the )(?<!those )(?<!these )(?<!your )(?<!my )(?<!all )(?<!at )"
+    r"(?<!\bfor )(?<!\bin )(?<!\bone )(?<!\bhigh )(?<!the )(?<!those )(?<!these )(?<!your )(?<!my )(?<!all )(?<!at )"
     r"(?<!to )(?<!of )(?<!(?<!would )like )(?<!\bon )(?<!\bhad )(?<!\bhas )(?<!\bhave )(?<!\bthan )(?<!\bfrom )(?<!\bbetween )"
     rf"\b{_NUMBER}\s+(?:(?!(?:{_NOT_STROKES})\b(?! (?:{_OF_A_LIMB})\b)|(?:{_BETWEEN})\b)[a-z-]+\s+){{0,2}}"
     rf"(?!(?:{_NOT_STROKES})\b)(?:high five|[a-z-]+s)\b",

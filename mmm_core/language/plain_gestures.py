@@ -23,7 +23,7 @@ OUTSIDE, SEVERAL = "outside", "several"
 """Classes of texts that are no gesture of the corpus: what the robot cannot do, and several gestures."""
 _SIDES = {frozenset({"left_arm"}): "left", frozenset({"right_arm"}): "right"}
 _SIDE = re.compile(
-    r"(?<!all )(?<!just )\b(left|right)\b(?!-? ?(?:now|away|here|there|after|before|then|next|up|down|over|on|in|at|$|[,.;!?]))"
+    r"(?<!all )(?<!just )\b(left|right)\b(?!-? ?(?:(?:now|away|here|there|after|before|then|next|up|down|over|on|in|at)\b|$|[,.;!?]))"
 )
 """A side that is named without a limb: "a left hook"."""
 _WITH_SIDE = re.compile(

@@ -27,7 +27,21 @@ def test_each_gesture_has_phrases_and_no_phrase_has_two_gestures() -> None:
 
 @pytest.mark.parametrize(
     "name",
-    ["dev", "dev_2", "test", "test_1", "test_2", "test_3", "test_4", "test_5", "seen", "phrases_dev", "phrases_test"],
+    [
+        "dev",
+        "dev_2",
+        "dev_3",
+        "test",
+        "test_singles",
+        "test_1",
+        "test_2",
+        "test_3",
+        "test_4",
+        "test_5",
+        "seen",
+        "phrases_dev",
+        "phrases_test",
+    ],
 )
 def test_no_phrase_is_a_sentence_of_a_set_that_measures(name: str) -> None:
     every = {_letters(phrase) for phrases in load_written_phrases().values() for phrase in phrases}
