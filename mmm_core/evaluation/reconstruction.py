@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -46,7 +47,7 @@ def shown(features: Features) -> PostureFeatures:
 
 
 def performed(probe: Probe, seed: int) -> Features:
-    """Features (T, 263) of the corpus's own performance of a probe."""
+    """Features (T, 263) of the corpus's own performance of a probe, with as many of its strokes as there is room for in a clip."""
 
     def gesture(p: Probe) -> Gesture:
         family = FAMILIES[p.family]
@@ -57,12 +58,14 @@ def performed(probe: Probe, seed: int) -> Features:
         tempo = {"slow": 0.65, "fast": 1.4}.get(p.tempo, 1.0)
         return Gesture(p.family, side, count, where, tempo=tempo, hold_s=p.hold_s)
 
-    spec = ClipSpec(tuple(gesture(p) for p in ((probe, probe.then) if probe.then else (probe,))))
+    gestures = [gesture(p) for p in ((probe, probe.then) if probe.then else (probe,))]
     rng = np.random.default_rng(seed)
-    drawn = (synthesise_spec(spec, rng) for _ in range(_MOST_DRAWS))  # a slow performance may exceed a clip's length
-    clip = next((clip for clip in drawn if clip is not None), None)
-    assert clip is not None, f"{probe.text}: longer than a clip may be in each of {_MOST_DRAWS} draws"
-    return clip.features
+    for fewer in range(max(g.count for g in gestures)):
+        spec = ClipSpec(tuple(replace(g, count=max(g.count - fewer, 1)) for g in gestures))
+        drawn = (synthesise_spec(spec, rng) for _ in range(_MOST_DRAWS))  # a slow performance may exceed a clip's length
+        if (clip := next((clip for clip in drawn if clip is not None), None)) is not None:
+            return clip.features
+    raise AssertionError(f"{probe.text}: longer than a clip may be in each of {_MOST_DRAWS} draws of one stroke")
 
 
 def tokenizer_figures(tokenizer: Tokenizer) -> dict[str, Any]:

@@ -26,6 +26,8 @@ _SIDE = re.compile(
     r"(?<!all )(?<!just )\b(left|right)\b(?!-? ?(?:(?:now|away|here|there|after|before|then|next|up|down|over|on|in|at)\b|$|[,.;!?]))"
 )
 """A side that is named without a limb: "a left hook"."""
+_LAST_SIDE = re.compile(r"(?<!\bthe )(?<!\byour )(?<!\bto )(?<!\ball )\b(left|right)[.!?]?$")
+"""A side at the end, which is the arm of a gesture that has no directions: "uppercut left"."""
 _WITH_SIDE = re.compile(
     r"\b(?:with|from|using|by|on) (?:your |the )?(left|right)\b(?! (?:side|ear|eye|knee|shoulder|hip|cheek|foot|leg)\b)"
 )
@@ -99,7 +101,7 @@ def plain_command(gesture: str, said: str) -> str:
         not side
         and one_arm
         and not gesture.endswith(("left", "right"))
-        and (named := _SIDE.search(said) or _WITH_SIDE.search(said))
+        and (named := _SIDE.search(said) or _WITH_SIDE.search(said) or ("/" not in gesture and _LAST_SIDE.search(said)))
     ):
         side = named[1]
     if IN_TURN.search(said):
