@@ -12,7 +12,8 @@ from typing import NamedTuple
 from mmm_core.language.commands import Reading
 from mmm_core.language.count_words import ADVERBS, NUMBERS, count_asked
 from mmm_core.language.known_phrases import is_known_phrase
-from mmm_core.language.limbs import limbs_of
+from mmm_core.language.limbs import is_gesture_verb, limbs_of
+from mmm_core.language.plain_gestures import gesture_of
 from mmm_core.language.spelling import mended
 from mmm_core.language.word_tables import any_of
 
@@ -68,7 +69,7 @@ def with_said_number(reading: Reading) -> Reading:
     if [len(step) for step in reading.steps] != [1]:
         return reading
     (command,) = reading.steps[0]
-    if count_asked(command.text) is not None or not is_known_phrase(command.text):
+    if count_asked(command.text) is not None or not _is_gesture(command.text):
         return reading
     number = strokes_said(reading.text)
     if number is None:
@@ -107,3 +108,9 @@ def _mentions(text: str) -> list[_Mention]:
             if not is_other and _DENIED.search(before) is None:
                 found.setdefault(start, _Mention(start, _VALUES.get(match["n"], 1)))
     return [found[start] for start in sorted(found)]
+
+
+def _is_gesture(command: str) -> bool:
+    """Whether a command is a phrase of the corpus, the plain command of a gesture, or a verb alone, which is too short for a phrase."""
+    is_verb = " " not in command and is_gesture_verb(command.lower())
+    return is_verb or is_known_phrase(command) or gesture_of(command) != ""
