@@ -7,6 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from mmm_core.corpus.heldout import PROBES, Probe
+from mmm_core.evaluation.stroke_counts import count_strokes
 from mmm_core.motion.motion import Motion
 from mmm_core.motion.posture_features import PostureFeatures, part, posture_features
 from mmm_core.recognition import checks
@@ -30,7 +31,7 @@ def judge(probe: Probe, shown: PostureFeatures, with_pose: bool = False) -> dict
     if probe.side:
         verdict["side"] = acts_with(shown, probe.family, probe.side)
     if probe.count is not None:
-        found = checks.count(shown, probe.family, probe.side)
+        found = count_strokes(shown, probe.family, probe.side, probe.direction)
         verdict["count"] = found is not None and abs(found - probe.count) <= 1
         verdict["count_exact"] = found == probe.count
     if probe.direction:

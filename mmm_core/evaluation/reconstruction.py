@@ -62,7 +62,9 @@ def performed(probe: Probe, seed: int) -> Features:
     rng = np.random.default_rng(seed)
     for fewer in range(max(g.count for g in gestures)):
         spec = ClipSpec(tuple(replace(g, count=max(g.count - fewer, 1)) for g in gestures))
-        drawn = (synthesise_spec(spec, rng) for _ in range(_MOST_DRAWS))  # a slow performance may exceed a clip's length
+        drawn = (
+            synthesise_spec(spec, rng) for _ in range(_MOST_DRAWS)
+        )  # a slow performance may exceed a clip's length
         if (clip := next((clip for clip in drawn if clip is not None), None)) is not None:
             return clip.features
     raise AssertionError(f"{probe.text}: longer than a clip may be in each of {_MOST_DRAWS} draws of one stroke")

@@ -23,7 +23,8 @@ OUTSIDE, SEVERAL = "outside", "several"
 """Classes of texts that are no gesture of the corpus: what the robot cannot do, and several gestures."""
 _SIDES = {frozenset({"left_arm"}): "left", frozenset({"right_arm"}): "right"}
 _SIDE = re.compile(
-    r"(?<!all )(?<!just )\b(left|right)\b(?!-? ?(?:(?:now|away|here|there|after|before|then|next|up|down|over|on|in|at)\b|$|[,.;!?]))"
+    r"(?<!all )(?<!just )\b(left|right)\b"
+    r"(?!-? ?(?:(?:now|away|here|there|after|before|then|next|up|down|over|on|in|at)\b|$|[,.;!?]))"
 )
 """A side that is named without a limb: "a left hook"."""
 _LAST_SIDE = re.compile(r"(?<!\bthe )(?<!\byour )(?<!\bto )(?<!\ball )\b(left|right)[.!?]?$")

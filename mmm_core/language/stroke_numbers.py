@@ -17,7 +17,15 @@ from mmm_core.language.plain_gestures import gesture_of
 from mmm_core.language.spelling import mended
 from mmm_core.language.word_tables import any_of
 
-_IN_WORDS = {"half a dozen": 6, "half dozen": 6, "a dozen": 12, "a couple of": 2, "a couple": 2, "a pair of": 2, "a trio of": 3}
+_IN_WORDS = {
+    "half a dozen": 6,
+    "half dozen": 6,
+    "a dozen": 12,
+    "a couple of": 2,
+    "a couple": 2,
+    "a pair of": 2,
+    "a trio of": 3,
+}
 _VALUES = NUMBERS | ADVERBS | _IN_WORDS | {"double": 2, "triple": 3, "quadruple": 4}
 _STROKE, _DOUBLE, _UNIT, _ASKS = (any_of("stroke_numbers", kind) for kind in ("stroke", "for", "unit", "asks"))
 _NUMBER = (
@@ -26,12 +34,14 @@ _NUMBER = (
 )
 _SEVERAL = _NUMBER.replace("one|", "").replace("|1)", ")")
 """A number above one: "one" stands for a thing or a person more often than for a stroke."""
-_ADJECTIVES = r"(?:(?!(?:times|of|or|and|to|for|in|at|on|with|seconds?|minutes?|people|kids|children)\b)[a-z'-]+ ){0,2}?"
+_ADJECTIVES = (
+    r"(?:(?!(?:times|of|or|and|to|for|in|at|on|with|seconds?|minutes?|people|kids|children)\b)[a-z'-]+ ){0,2}?"
+)
 _OF_STROKES = re.compile(rf"{_SEVERAL} (?!{_UNIT}\b){_ADJECTIVES}{_STROKE}\b(?! (?:ago|ahead|away)\b)")
 _FORMS = _OF_STROKES, *(
     re.compile(form)
     for form in (
-        rf"{_NUMBER} ?(?:times|time only|x)(?! (?:the |as |a |per )?(?:speed|tempo|slower|faster|bigger|larger|size|two|three|five)\b)",
+        rf"{_NUMBER} ?(?:times|x)(?! (?:the |as |a |per )?(?:speed|tempo|slower|faster|bigger|larger|size|two|three|five)\b)",
         rf"\b(?:x ?|times )(?P<n>{'|'.join(NUMBERS)})\b(?! ?{_UNIT}\b)",
         rf"\b(?:count|reps|n|repeat|taps|laps|claps|number of \w+) ?[:=]? ?{_NUMBER}(?! ?{_UNIT}\b)",
         rf"(?<!\bat )(?<!\bthis )(?<!\bfor )(?<!\bthe )\b(?P<n>{'|'.join(ADVERBS)})\b"
@@ -41,8 +51,8 @@ _FORMS = _OF_STROKES, *(
         rf"\b{_ASKS} {_SEVERAL}(?=$|[.,;!?]| (?:more|please|from|with|one after)\b)",
         rf"[,:;!?.] (?:just |only |about |exactly |say |that is )?{_SEVERAL}(?: please| more| only| now)?(?=$|[.,;!?])(?!, \d)",
         rf"\b(?P<n>double|triple|quadruple) {_DOUBLE}\b",
-        rf"\b(?P<n>just one|just 1|only one|just the one|a single|one single|one) (?:(?:last|quick|strong|big|small|final|more) )?"
-        rf"(?:clap|nod|punch|jab|knock|wave|hook|uppercut|pump|bow|shrug|dab|kiss|tap|chop|salute|blow|hug|slash|shot|arrow)\b",
+        r"\b(?P<n>just one|just 1|only one|just the one|a single|one single|one) (?:(?:last|quick|strong|big|small|final|more) )?"
+        r"(?:clap|nod|punch|jab|knock|wave|hook|uppercut|pump|bow|shrug|dab|kiss|tap|chop|salute|blow|hug|slash|shot|arrow)\b",
     )
 )  # fmt: skip
 _PLACE = re.compile(rf"\b{any_of('stroke_numbers', 'place')} $")
@@ -111,6 +121,6 @@ def _mentions(text: str) -> list[_Mention]:
 
 
 def _is_gesture(command: str) -> bool:
-    """Whether a command is a phrase of the corpus, the plain command of a gesture, or a verb alone, which is too short for a phrase."""
+    """Whether a command is a phrase of the corpus, the plain command of a gesture, or a verb alone, too short for a phrase."""
     is_verb = " " not in command and is_gesture_verb(command.lower())
     return is_verb or is_known_phrase(command) or gesture_of(command) != ""

@@ -79,7 +79,7 @@ def needs_tags(reading: Reading) -> bool:
 
 
 def _may_be_divided_wrongly(reading: Reading) -> bool:
-    """Whether a sentence has words of `_DIVIDED_WRONGLY`, commands at once, or several in turn that differ and are not its own words.
+    """Whether a sentence has words of `_DIVIDED_WRONGLY`, commands at once, or different ones in turn in other words.
 
     A phrase of the corpus is not divided wrongly, and no network changes a sentence that asks for nothing. Of 328 sentences of
     several commands in turn, by 20 writers who had not seen the rules, these read 221 rightly; networks mend 48 and spoil 5 of 254

@@ -1,0 +1,86 @@
+"""Counts the strokes of any gesture that has strokes: turning points along the axis of its reference performance.
+
+How many turning points the reference performance has with one, two, ... eight strokes tells what a number of them means, so no
+table of families is needed. `recognition.checks.count` counts some families without the corpus.
+"""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mmm_core.corpus.families import FAMILIES, Gesture
+from mmm_core.evaluation.reference import Reference, channels, reference
+from mmm_core.motion.posture_features import PostureFeatures
+from mmm_core.motion.repetitions import peaks_beyond
+from mmm_core.recognition import checks
+
+Array = NDArray[np.floating]
+_NUMBERS = range(1, 9)
+"""Numbers of strokes of reference performances."""
+_SHOWS_AXIS = 3
+"""Strokes of the reference performance that gives the axes."""
+_TURN_SHARE = 0.4
+"""Share of the gesture's range by which a stroke rises and falls at least."""
+_IN_CYCLES = frozenset({"shake_head", "sway"})
+"""Families of which `checks.count` counts each swing to either side, and a sentence both as one."""
+_CHANNELS = ("left", "right", "head", "trunk")
+
+
+def count_strokes(shown: PostureFeatures, family: str, side: str = "", direction: str = "") -> int | None:
+    """The strokes of a motion of a family; None where they cannot be told from each other.
+
+    Args:
+        shown: the motion.
+        family: its family.
+        side: side that the gesture was asked with; that of the moving arms when empty.
+        direction: its direction.
+    """
+    if family not in _IN_CYCLES and (found := checks.count(shown, family, side)) is not None:
+        return found
+    sides = FAMILIES[family].sides
+    sides_in_turn = (side, shown.arms, "right", *sides)
+    own_side = next((one for one in sides_in_turn if one in sides), "")
+    counted = _counted_channels(family, own_side, direction)
+    if counted is None:
+        return None
+    names, turning_points = counted
+    n = _turns(shown, reference(Gesture(family, own_side, _SHOWS_AXIS, direction)), names)
+    return _NUMBERS[int(np.argmin(np.abs(np.array(turning_points) - n)))]
+
+
+@lru_cache(maxsize=512)
+def _counted_channels(family: str, side: str, direction: str) -> tuple[tuple[str, ...], tuple[int, ...]] | None:
+    """Channels whose turning points tell the number of strokes, and how many there are with each number."""
+    if not FAMILIES[family].counts:
+        return None
+    performed = [reference(Gesture(family, side, n, direction)) for n in _NUMBERS]
+    axes = reference(Gesture(family, side, _SHOWS_AXIS, direction))
+    for names in (axes.acting, *((name,) for name in _CHANNELS)):
+        found = tuple(_turns(one.shown, axes, names) for one in performed)
+        if names and all(few < more for few, more in pairwise(found)):
+            return names, found
+    return None
+
+
+def _turns(shown: PostureFeatures, ref: Reference, names: tuple[str, ...]) -> int:
+    """Turning points of a motion in the sense of the reference's first stroke, of all channels together."""
+    n = 0
+    of_shown, of_reference = channels(shown), channels(ref.shown)
+    for name in names:
+        clean = of_reference[name][ref.core]
+        axis = np.linalg.svd(clean - clean.mean(0), full_matrices=False)[2][0]
+        signal, meant = of_shown[name] @ axis, clean @ axis
+        turn = _TURN_SHARE * float(np.ptp(meant))
+        far = np.flatnonzero(np.abs(meant - meant[0]) > 0.5 * turn)
+        sense = 1.0 if not len(far) or meant[far[0]] > meant[0] else -1.0
+        n += len(_peaks_that_fall(sense * signal, turn))
+    return n
+
+
+def _peaks_that_fall(signal: Array, turn: float) -> list[int]:
+    found = peaks_beyond(signal, turn) if turn > 0 else []
+    return found[:-1] if found and signal[found[-1]] - signal[found[-1] :].min() < turn else found

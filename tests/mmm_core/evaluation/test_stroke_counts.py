@@ -1,0 +1,51 @@
+"""Strokes are counted as the corpus performs them, for nearly every family that has any."""
+
+from __future__ import annotations
+
+import pytest
+
+from mmm_core.corpus.families import FAMILIES
+from mmm_core.corpus.heldout import Probe
+from mmm_core.evaluation.reconstruction import performed, shown
+from mmm_core.evaluation.stroke_counts import count_strokes
+from mmm_core.motion.posture_features import PostureFeatures
+
+_NOT_TOLD = frozenset({"climb", "robot", "flute"})
+"""Families whose strokes are not alike, or too small to be seen."""
+_WITH_STROKES = sorted(name for name, family in FAMILIES.items() if family.counts and name not in _NOT_TOLD)
+
+
+def _performance(name: str, n: int, seed: int) -> PostureFeatures:
+    family = FAMILIES[name]
+    direction = "" if "" in family.directions else (family.directions or ("",))[0]
+    return shown(performed(Probe("", name, family.limb, count=n, direction=direction), seed))
+
+
+def _counted(name: str, n: int, seed: int) -> int | None:
+    directions = FAMILIES[name].directions
+    return count_strokes(_performance(name, n, seed), name, "", "" if "" in directions else (directions or ("",))[0])
+
+
+@pytest.mark.parametrize(
+    "name", ["hammer", "shrug", "karate_chop", "clap", "draw_circle", "sway", "nod", "overhead_press", "breathe"]
+)
+@pytest.mark.parametrize("n", [1, 2, 4])
+def test_as_many_strokes_are_counted_as_are_performed(name: str, n: int) -> None:
+    assert _counted(name, n, 70 + n) == n
+
+
+def test_nearly_all_families_are_counted_within_one_and_most_exactly() -> None:
+    found = {name: _counted(name, 3, 70) for name in _WITH_STROKES}
+    assert {name for name, n in found.items() if n is None or abs(n - 3) > 1} == set()
+    assert sum(n == 3 for n in found.values()) > 0.85 * len(found)
+
+
+def test_a_motion_without_the_gesture_has_one_stroke_at_most_and_a_family_without_strokes_none() -> None:
+    still = _performance("stand", 1, 0)
+    assert count_strokes(still, "hammer", "right") in (0, 1)
+    assert count_strokes(still, "salute", "right") is None
+
+
+@pytest.mark.parametrize("name", sorted(_NOT_TOLD))
+def test_what_cannot_be_told_is_not_claimed(name: str) -> None:
+    assert _counted(name, 2, 70) != 2
