@@ -52,10 +52,11 @@ class ParserTexts:
 
     Args:
         rng: its random numbers.
+        shares: how often each kind is drawn.
     """
 
-    def __init__(self, rng: random.Random) -> None:
-        self._rng, self._texts = rng, Texts(rng)
+    def __init__(self, rng: random.Random, shares: Shares | None = None) -> None:
+        self._rng, self._texts, self._shares = rng, Texts(rng), shares or Shares()
         self._labelled = load_labelled_sentences()
         self._patterns = [(one, places) for one in load_marked_sentences() if (places := _places(one))]
         self._denials = denial_patterns()
@@ -65,7 +66,7 @@ class ParserTexts:
         rng = self._rng
         kinds = (self._labelled_sentence, self.refilled, self._denial, self._joined, self._outside)
         drawn = rng.random()
-        for kind, share in zip(kinds, Shares(), strict=True):
+        for kind, share in zip(kinds, self._shares, strict=True):
             if drawn < share:
                 return kind()
             drawn -= share

@@ -14,9 +14,9 @@ import torch.nn.functional as F
 from torch import Tensor
 
 from mmm_core.corpus.labelled_sentences import LabelledSentence, load_labelled_sentences
-from mmm_core.inference.checkpoint import load_text_encoder
+from mmm_core.inference.checkpoint import file_hash, load_text_encoder
 from mmm_core.inference.onednn_linear import can_pack_bf16
-from mmm_core.inference.own_layers_file import save_parser
+from mmm_core.inference.own_layers_file import load_parser, save_parser
 from mmm_core.language.gesture_steps import mirrored, token_ids, tokens
 from mmm_core.language.mirroring import canonical
 from mmm_core.model.sentence_parser import END_ID, ParserConfig, SentenceParser
@@ -28,6 +28,9 @@ from mmm_core.training.run import Run, Schedule, train
 
 STEPS, BATCH = 7000, 64
 """Optimisation steps, and sentences of a batch."""
+FURTHER_STEPS, FURTHER_RATE = 3500, 0.5
+"""Steps of a parser that learns further, and the factor of its learning rates."""
+FURTHER_SHARES = Shares(labelled=0.7, refilled=0.08, denial=0.03, joined=0.04, outside=0.05)
 RATE, RATE_OF_COPIED = 8e-4, 2e-4
 """Highest learning rates: of new layers, and of the copies of the encoder's layers."""
 DROPOUT, SMOOTHING = 0.1, 0.03
@@ -38,7 +41,12 @@ Draw = Callable[[], LabelledSentence]
 
 
 def train_parser(
-    out: Path, folder: Path, draw_with: Callable[[random.Random], Draw] | None = None, *, steps: int = STEPS
+    out: Path,
+    folder: Path,
+    draw_with: Callable[[random.Random], Draw] | None = None,
+    *,
+    start: Path | None = None,
+    steps: int | None = None,
 ) -> SentenceParser:
     """Train a parser and write it; equal arguments give equal weights on one machine, however often the run was interrupted.
 
@@ -46,32 +54,38 @@ def train_parser(
         out: file of the parser.
         folder: where the run keeps its state, from which it goes on; other sentences or steps are another run.
         draw_with: what draws sentences with what they ask for from random numbers; all kinds of `ParserTexts` when None.
-        steps: optimisation steps.
+        start: a parser that learns further, at lower rates, above all from labelled sentences; a new one when None.
+        steps: optimisation steps; `STEPS`, or `FURTHER_STEPS` from a parser, when None.
     """
     encoder = load_text_encoder()
     rng = random.Random()
-    draw = draw_with(rng) if draw_with is not None else ParserTexts(rng).draw
+    steps = steps or (FURTHER_STEPS if start else STEPS)
+    shares = FURTHER_SHARES if start else Shares()
+    draw = draw_with(rng) if draw_with is not None else ParserTexts(rng, shares).draw
     with torch.random.fork_rng(devices=[]):
         torch.manual_seed(SEED)
         parser = SentenceParser(ParserConfig(tokens()), encoder.config)
         copy_layers(parser.layers, encoder, parser.config.n_shared)
+        if start:
+            parser.load_state_dict(load_parser(start).state_dict())
         batches = lru_cache(maxsize=1)(partial(_batches, draw, rng))
 
         def losses(step: int, _generator: torch.Generator) -> dict[str, Tensor]:
             at = step % TOGETHER
             return {"loss": _loss(parser, encoder, [_canonical(one) for one in batches(step - at)[at]])}
 
-        schedule = Schedule(steps, RATE, final_share=0.02, weight_decay=0.02, save_every=SAVE_EVERY, seed=SEED)
+        rate = RATE * FURTHER_RATE if start else RATE
+        schedule = Schedule(steps, rate, final_share=0.02, weight_decay=0.02, save_every=SAVE_EVERY, seed=SEED)
         run = Run(folder, precision="bf16" if can_pack_bf16() else "fp32")
-        train(parser, losses, schedule, run, f"parser_{_data_key(steps)}", slower={"layers.": RATE_OF_COPIED / RATE})
+        train(parser, losses, schedule, run, f"parser_{_data_key(steps, shares, start)}", slower={"layers.": RATE_OF_COPIED / RATE})
     save_parser(out, parser.requires_grad_(False))
     return parser
 
 
-def _data_key(steps: int) -> str:
-    """Tells apart runs of other sentences, shares, gestures or steps; the same in every process."""
+def _data_key(steps: int, shares: Shares, start: Path | None) -> str:
+    """Tells apart runs of other sentences, shares, gestures, steps or parsers to start from; the same in every process."""
     sentences = [(one.text, one.steps) for one in load_labelled_sentences()]  # sets of manners have no fixed order
-    return hashlib.sha256(repr((steps, BATCH, Shares(), tokens(), sentences)).encode()).hexdigest()[:8]
+    return hashlib.sha256(repr((steps, BATCH, shares, tokens(), sentences, start and file_hash(start))).encode()).hexdigest()[:8]
 
 
 def _batches(draw: Draw, rng: random.Random, first: int) -> list[list[LabelledSentence]]:

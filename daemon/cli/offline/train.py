@@ -74,6 +74,9 @@ def train(
 
     Example, which gestures a whole sentence asks for: mmmd train parser --run runs/parser --out parser.safetensors
 
+    Example, more sentences for the shipped parser: mmmd train parser --models mmm_core/weights/sentence_parser.safetensors
+    --run runs/further --out parser.safetensors
+
     Example, what tells which gesture is meant: mmmd train gestures --out gestures.safetensors
 
     Example, what chooses among the ways to read a sentence: mmmd train choice --out choice.txt
@@ -90,7 +93,8 @@ def train(
         stage: all of them and a checkpoint, or one; scope builds what refusals rest on again for the run's checkpoint;
             tagger trains what divides sentences into commands, from the marked sentences that ship (50 minutes, no recipe);
             gestures trains what tells which gesture other words mean, from the phrases that ship (an hour, no recipe);
-            parser trains what tells which gestures a sentence asks for, from the labelled sentences (an hour, no recipe);
+            parser trains what tells which gestures a sentence asks for, from the labelled sentences (an hour, no recipe), or
+            one of --models further, on more of them;
             choice finds the weights with which one of the ways to read a sentence is chosen (two minutes, no recipe);
             manner finds the weights of words that ask for a tempo or a size, and manner_choice.txt beside --out (a minute);
             average writes the mean of --models; ablation trains variants of a recipe and prints what the probes and real
@@ -106,7 +110,7 @@ def train(
         sample_every: steps between pictures in the run's samples/; 0 for none.
         tensorboard: write TensorBoard events as well (extra `train`).
         variant: names of variants (ablation); all when none is given.
-        models: checkpoints, two or more, of which the mean is taken (average).
+        models: checkpoints, two or more, of which the mean is taken (average); the parser that learns further (parser).
         yes: begin without a question. Only a person at a terminal is asked, and only before a run that is new.
     """
     os.environ.setdefault("OMP_WAIT_POLICY", "passive")
@@ -122,12 +126,14 @@ def train(
     torch.set_num_threads(threads)
     if variant and stage != "ablation":
         raise CommandError(f"train {stage}: --variant is for `mmmd train ablation`")
-    if (stage == "average") != bool(models):
-        raise CommandError(f"train {stage}: --models is for `mmmd train average`, which needs two of them or more")
+    if models and stage not in ("average", "parser"):
+        raise CommandError(f"train {stage}: --models is for `mmmd train average` and `mmmd train parser`")
+    if stage == "parser" and len(models) > 1:
+        raise CommandError(f"train parser: --models has {len(models)} files; one parser can learn further")
     if stage == "average":
         return _average(models, out)
     if stage in ("tagger", "gestures", "parser", "choice", "manner"):
-        return _reader_part(stage, out, run_dir or Path("runs") / stage)
+        return _reader_part(stage, out, run_dir or Path("runs") / stage, models)
     config = config or ("ablation" if stage == "ablation" else "compact")
     recipe = read_recipe(config, seed)
     if stage == "tokenizer" and recipe.start:
@@ -185,7 +191,10 @@ def _average(models: Sequence[Path], out: Path | None) -> int:
 
 
 def _reader_part(
-    stage: Literal["tagger", "gestures", "parser", "choice", "manner"], out: Path | None, folder: Path
+    stage: Literal["tagger", "gestures", "parser", "choice", "manner"],
+    out: Path | None,
+    folder: Path,
+    start: Sequence[Path],
 ) -> int:
     """Train and write a part of the reader: one of its networks, or weights of readings or of words of manner."""
     from mmm_core.training.choice_training import train_choice
@@ -201,7 +210,7 @@ def _reader_part(
     elif stage == "gestures":
         train_classifier(out)
     elif stage == "parser":
-        train_parser(out, folder)
+        train_parser(out, folder, start=start[0] if start else None)
     elif stage == "manner":
         n_texts, n_pieces = train_manner(out)
         n, n_manners, n_found = train_evidence(out.with_name("manner_choice.txt"))

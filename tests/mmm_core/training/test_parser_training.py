@@ -77,6 +77,21 @@ def test_an_interrupted_run_gives_the_weights_of_one_that_was_not(
     assert all(torch.equal(x, y) for x, y in zip(whole.state_dict().values(), parts.state_dict().values(), strict=True))
 
 
+def test_a_parser_that_learns_further_starts_from_the_given_one(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(parser_training, "BATCH", 4)
+    start = tmp_path / "start"
+    given = train_parser(start, tmp_path / "run", _draw_with, steps=3).state_dict()
+    further = train_parser(tmp_path / "further", tmp_path / "run", _draw_with, start=start, steps=1).state_dict()
+    fresh = train_parser(tmp_path / "fresh", tmp_path / "run", _draw_with, steps=1).state_dict()
+
+    def off(one: dict[str, torch.Tensor], other: dict[str, torch.Tensor]) -> float:
+        return max(float((x - y).abs().max()) for x, y in zip(one.values(), other.values(), strict=True))
+
+    assert 0 < off(further, given) < 0.2 * off(fresh, given)
+
+
 def test_the_batches_of_a_step_do_not_depend_on_what_was_drawn_before() -> None:
     rng = random.Random(5)
     draw = ParserTexts(rng).draw
