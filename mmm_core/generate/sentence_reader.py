@@ -37,6 +37,7 @@ from mmm_core.language.plain_gestures import (
 )
 from mmm_core.language.positions import in_said_order
 from mmm_core.language.reading import read
+from mmm_core.language.said_arm import with_said_arm
 from mmm_core.language.said_at_once import said_at_once, without_repeats
 from mmm_core.language.spelling import mended
 from mmm_core.language.stroke_numbers import with_said_number
@@ -81,7 +82,7 @@ class SentenceReader:
 
     def read(self, text: str) -> Reading:
         """The commands of a text."""
-        return without_hard_phrases(text, with_said_number(self._read(text)))
+        return without_hard_phrases(text, with_said_number(with_said_arm(self._read(text))))
 
     def _read(self, text: str) -> Reading:
         by_rules = read(text)

@@ -77,7 +77,14 @@ def train_parser(
         rate = RATE * FURTHER_RATE if start else RATE
         schedule = Schedule(steps, rate, final_share=0.02, weight_decay=0.02, save_every=SAVE_EVERY, seed=SEED)
         run = Run(folder, precision="bf16" if can_pack_bf16() else "fp32")
-        train(parser, losses, schedule, run, f"parser_{_data_key(steps, shares, start)}", slower={"layers.": RATE_OF_COPIED / RATE})
+        train(
+            parser,
+            losses,
+            schedule,
+            run,
+            f"parser_{_data_key(steps, shares, start)}",
+            slower={"layers.": RATE_OF_COPIED / RATE},
+        )
     save_parser(out, parser.requires_grad_(False))
     return parser
 
@@ -85,7 +92,9 @@ def train_parser(
 def _data_key(steps: int, shares: Shares, start: Path | None) -> str:
     """Tells apart runs of other sentences, shares, gestures, steps or parsers to start from; the same in every process."""
     sentences = [(one.text, one.steps) for one in load_labelled_sentences()]  # sets of manners have no fixed order
-    return hashlib.sha256(repr((steps, BATCH, shares, tokens(), sentences, start and file_hash(start))).encode()).hexdigest()[:8]
+    return hashlib.sha256(
+        repr((steps, BATCH, shares, tokens(), sentences, start and file_hash(start))).encode()
+    ).hexdigest()[:8]
 
 
 def _batches(draw: Draw, rng: random.Random, first: int) -> list[list[LabelledSentence]]:

@@ -1,0 +1,85 @@
+"""Finds the hand that a sentence of one command names anywhere: "scan the horizon with a hand above your eyes, left one".
+
+A command in plain words has lost what stands apart from its verb.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+
+from mmm_core.language.commands import Reading
+from mmm_core.language.count_words import count_asked
+from mmm_core.language.gesture_steps import ANY_ARM, arm_of
+from mmm_core.language.limbs import SOME_ARM, limbs_of
+from mmm_core.language.plain_gestures import gesture_of, plain_command
+from mmm_core.language.spelling import mended
+
+_NO_HAND = r"(?! (?:side|ear|eye|knee|hip|cheek|foot|boot|leg|away|now|here|there|time|order|amount|place|moment)\b)"
+_HANDS = tuple(
+    re.compile(form)
+    for form in (
+        r"\b(?P<side>left|right) (?:hand|arm|fist|palm|forearm|mitt|paw|glove|wing|claw|finger|biceps?|one|flipper|limb)(?:'?s)?\b",
+        r"\b(?P<side>left|right)-? ?(?:handed|hander|armed)\b",
+        r"\b(?P<side>left|right)y\b",
+        r"\b(?:with|using|by|in|off|use|only|just) (?:(?:your|the|its|own|good|bad|weak|strong) )*(?P<side>left|right)\b"
+        + _NO_HAND,
+        r"\byour (?P<side>left|right)(?=$|[,.;:!?]| (?:and|to|please|then|up|out|goes|does|is|alone|only|for|across)\b)",
+        r"(?:^|[,;:.!?-] )(?:the )?(?P<side>left)(?: please| only)?(?=$|[,.;:!?])",
+        r"[,;:.!?-] (?:the )?(?P<side>right)(?: please| only)?(?=$|[.;:!])",
+        r"\b(?:hand|arm|one|fist|palm) (?:of )?(?P<side>left|right)\b",
+        r"\bthe (?P<side>left|right) (?:alone|only)\b",
+    )
+)
+"""A side that is a hand and no direction, by its noun or by the words before and after it."""
+_PLACES = re.compile(r"\b(?:on|to|at|down|from|there) (?:your |the )?$")
+_OTHERWISE = re.compile(
+    r"\b(?:other(?!s)|free|remain\w*|rests?|stays?|hurts?|sore|swap\w*|switch\w*|either|turns?|alternat\w*|trade|copy|likewise|brother)\b|"
+    r"\bnot (?:with )?(?:the|your) (?:one|hand|arm)\b|\bthat is your\b|\b(?:do|did|is) not (?:\w+ )?with\b|\bis not\b|\bhands off\b|"
+    r"\b(?:whichever|whatever|dirty|poorly|bad|wrapped|sticky|make it|actually|both hands|two hands)\b|"
+    r"\b(?:and|or|then) (?:the )?(?:left|right)\b|\bleft, right\b"
+)
+"""Words after which the hand that is named may not be the one that is meant."""
+_UNWANTED = re.compile(
+    r"\b(?:not|no|never|without|than|except|but|leave|spare|keep|forget|pretend|hands off|both)\b(?: [\w'-]+){0,4} $"
+)
+"""Words before a hand that is not to act, in the same clause."""
+_CORRECTED = re.compile(
+    r"\b(?:left|right)\b.*\b(?:no|sorry|oops|wait|i meant?|or rather|scratch that|make it|it should be)\b,? "
+    r"(?:[\w']+,? ){0,6}?(?P<side>left|right)(?: (?:hand|arm|one))?\b"
+)
+"""A hand that takes the place of another one: "with your right hand, no, sorry, with your left"."""
+
+
+def with_said_arm(reading: Reading) -> Reading:
+    """A reading whose one command, a gesture without a direction, has the hand that the sentence names, if it names none itself."""
+    if [len(step) for step in reading.steps] != [1]:
+        return reading
+    (command,) = reading.steps[0]
+    gesture = gesture_of(command.text)
+    if not gesture or "/" in gesture or arm_of(command.text, gesture) != ANY_ARM or command.limbs - SOME_ARM:
+        return reading
+    side, count = arm_said(reading.text), count_asked(command.text)
+    times = f" {count} times" if count else ""
+    text = plain_command(gesture, f"{side} hand{times}") if side else ""
+    if text in ("", plain_command(gesture, times)):
+        return reading
+    return replace(reading, steps=((replace(command, text=text, limbs=limbs_of(text)),),), plain=False)
+
+
+def arm_said(sentence: str) -> str:
+    """The hand that a sentence surely names, "left" or "right"; empty where it names none, or may mean the other one.
+
+    >>> arm_said("push the shopping trolley with one hand, the right.")
+    'right'
+    """
+    text = mended(sentence).lower()
+    if (corrected := _CORRECTED.search(text)) is not None:
+        return corrected["side"]
+    found = {
+        match["side"]
+        for form in _HANDS
+        for match in form.finditer(text)
+        if not any(words.search(text[: match.start("side")]) for words in (_PLACES, _UNWANTED))
+    }
+    return found.pop() if len(found) == 1 and _OTHERWISE.search(text) is None else ""

@@ -1,0 +1,65 @@
+"""The hand of the one command is found wherever the sentence names it, and not where it may mean the other one."""
+
+from __future__ import annotations
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from mmm_core.language.commands import PlainCommand, Reading
+from mmm_core.language.limbs import limbs_of
+from mmm_core.language.mirroring import mirror_words
+from mmm_core.language.said_arm import arm_said, with_said_arm
+
+_SAID = (
+    ("put your right one up to cover your mouth", "right"),
+    ("scan the horizon for me with a hand above your eyes, left one", "left"),
+    ("push the trolley with one hand, the right.", "right"),
+    ("throw it underarm, lefty, we're playing bowls", "left"),
+    ("make bye-bye with hand of right", "right"),
+    ("take the squeegee in your right, no, silly me, left, and do that window", "left"),
+    ("soup in, left hand.", "left"),
+)
+_NOT_SAID = (
+    "look at the door on your left",
+    "right, wave!",
+    "do it right away",
+    "that's right, clap",
+    "raise your hand, but not the one with the plaster, that is your left",
+    "not with your left hand",
+    "your right arm is sore, use the other",
+    "paint with the left and the right",
+    "either the left or the right hand",
+    "the phone is at your left ear",
+)
+
+
+@pytest.mark.parametrize(("sentence", "side"), _SAID)
+def test_the_named_hand_is_found(sentence: str, side: str) -> None:
+    assert arm_said(sentence) == side
+
+
+@pytest.mark.parametrize("sentence", _NOT_SAID)
+def test_a_direction_a_place_another_sense_and_a_denied_hand_are_no_hand(sentence: str) -> None:
+    assert arm_said(sentence) == ""
+
+
+@given(st.sampled_from([sentence for sentence, _ in _SAID[:3]]))
+def test_the_mirrored_sentence_names_the_other_hand(sentence: str) -> None:
+    assert {arm_said(sentence), arm_said(mirror_words(sentence))} == {"left", "right"}
+
+
+@pytest.mark.parametrize(
+    ("said", "command", "read"),
+    [
+        ("wave, lefty", "wave your hand", "wave your left hand"),
+        ("wave three times, lefty", "wave your hand 3 times", "wave your left hand 3 times"),
+        ("wave, lefty", "wave your right hand", "wave your right hand"),
+        ("bow, lefty", "bow politely", "bow politely"),
+        ("point up, lefty", "point your finger up", "point your finger up"),
+        ("scratch that thing, lefty", "scratch that thing", "scratch that thing"),
+    ],
+)
+def test_a_gesture_without_hand_and_direction_takes_it_and_keeps_its_number(said: str, command: str, read: str) -> None:
+    reading = Reading(said, ((PlainCommand(command, limbs=limbs_of(command)),),))
+    assert with_said_arm(reading).steps[0][0].text == read
