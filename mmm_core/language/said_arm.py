@@ -22,7 +22,7 @@ _HANDS = tuple(
         r"\b(?P<side>left|right) (?:hand|arm|fist|palm|forearm|mitt|paw|glove|wing|claw|finger|biceps?|one|flipper|limb)(?:'?s)?\b",
         r"\b(?P<side>left|right)-? ?(?:handed|hander|armed)\b",
         r"\b(?P<side>left|right)y\b",
-        r"\b(?:with|using|by|in|off|use|only|just) (?:(?:your|the|its|own|good|bad|weak|strong) )*(?P<side>left|right)\b"
+        r"\b(?:with|using|by|in|off|use|only|just) (?:(?:your|the|own|good|bad|weak|strong) )*(?P<side>left|right)\b"
         + _NO_HAND,
         r"\byour (?P<side>left|right)(?=$|[,.;:!?]| (?:and|to|please|then|up|out|goes|does|is|alone|only|for|across)\b)",
         r"(?:^|[,;:.!?-] )(?:the )?(?P<side>left)(?: please| only)?(?=$|[,.;:!?])",
@@ -35,7 +35,8 @@ _HANDS = tuple(
 _PLACES = re.compile(r"\b(?:on|to|at|down|from|there) (?:your |the )?$")
 _OTHERWISE = re.compile(
     r"\b(?:other(?!s)|free|remain\w*|rests?|stays?|hurts?|sore|swap\w*|switch\w*|either|turns?|alternat\w*|trade|copy|likewise|brother)\b|"
-    r"\bnot (?:with )?(?:the|your) (?:one|hand|arm)\b|\bthat is your\b|\b(?:do|did|is) not (?:\w+ )?with\b|\bis not\b|\bhands off\b|"
+    r"\bnot (?:with )?(?:the|your) (?:one|hand|arm)\b|\bthat is your\b|\b(?:do|did|is) not (?:\w+ )?with\b|\bis not\b|"
+    r"\bhands off\b|"
     r"\b(?:whichever|whatever|dirty|poorly|bad|wrapped|sticky|make it|actually|both hands|two hands)\b|"
     r"\b(?:and|or|then) (?:the )?(?:left|right)\b|\bleft, right\b"
 )
