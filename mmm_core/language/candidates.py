@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections import defaultdict
+from collections import Counter, defaultdict
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mmm_core.language.commands import Reading
+from mmm_core.language.limbs import is_gesture_verb
 from mmm_core.language.plain_gestures import OUTSIDE, SURE, Meant, family_of, is_gesture
 from mmm_core.language.said_at_once import asks_again
 from mmm_core.language.sure_reading import unknown_commands
@@ -33,7 +34,10 @@ EVIDENCE = (
     "least in sentence",  # the same least one, of the words within their sentence
     "unsure",  # number of commands that are probably no gesture
     "unlikely",  # sum over its gestures of the probability of the divisions that lack them
+    "left out",  # sum over the gestures that it lacks of the probability of the divisions that have them
+    "verbs left",  # number of verbs of gestures that the sentence has and no command
     "repeated",  # number of gestures that it has more than once, though the sentence has no word for that
+    "said once",  # number of commands that it has more than once, though the sentence has their longest word once
     "against one",  # probability that the sentence is one gesture, if the reading has several
     "at once",  # whether it has several commands in one step only
     "at once, said",  # and the sentence has words for that
@@ -54,6 +58,9 @@ _IN_TURN = re.compile(
     r"once (?:you|the|they|it|he|she|that)|subsequently|upon|when|as soon as|the (?:moment|minute|second|instant)|until|done|"
     r"having|sooner)\b"
 )
+_WORD = re.compile(r"[a-z']+")
+_STEM = 4
+"""Letters with which a word and its forms begin."""
 _LEAST = 0.01
 """Probability of a command that is no gesture, so that its logarithm is bounded."""
 _OF_A_PHRASE = math.log(0.97)
@@ -183,7 +190,13 @@ def _evidence(one: Candidate, ways: Ways, in_divisions: Mapping[str, float]) -> 
         one.in_sentence,
         sum(log < math.log(SURE) for log in logs),
         sum(1 - in_divisions.get(family, 0.0) for family in families),
+        sum(share for family, share in in_divisions.items() if family not in families),
+        len(
+            {word for word in _WORD.findall(said) if is_gesture_verb(word)}
+            - set(_WORD.findall(" ".join(commands).lower()))
+        ),
         0 if asks_again(said) else len(names) - len(set(names)),
+        _said_once(commands, said),
         whole.probability if several and is_gesture(whole.name) else 0.0,
         one_step,
         one_step and _AT_ONCE.search(said) is not None,
@@ -194,6 +207,13 @@ def _evidence(one: Candidate, ways: Ways, in_divisions: Mapping[str, float]) -> 
         math.exp(one.log_parsed),
         one.by_parser,
     ]
+
+
+def _said_once(commands: Sequence[str], said: str) -> int:
+    """How many times commands are repeated of whose longest word the sentence has the beginning only once."""
+    repeated = Counter(command.lower() for command in commands)
+    stems = {command: max(_WORD.findall(command) or [command], key=len)[:_STEM] for command in repeated}
+    return sum(max(0, n - max(1, said.count(stems[command]))) for command, n in repeated.items())
 
 
 def _in_divisions(ways: Ways) -> dict[str, float]:

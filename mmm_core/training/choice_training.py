@@ -27,7 +27,16 @@ from mmm_core.language.commands import PlainCommand, Reading
 from mmm_core.language.known_phrases import significant_words
 from mmm_core.language.plain_gestures import Meant, family_of, gestures, is_gesture, plain_command
 
-SETS = ("words_dev", "words_dev_2", "words_test_1", "words_test_2", "words_test_3", "words_test_4", "words_test_5")
+SETS = (
+    "words_dev",
+    "words_dev_2",
+    "words_dev_3",
+    "words_test_1",
+    "words_test_2",
+    "words_test_3",
+    "words_test_4",
+    "words_test_5",
+)
 """Sets of sentences that were looked at; `words_test` is none of them."""
 SETTLING = 3e-3
 """Factor of the squared weights in the loss."""
