@@ -42,7 +42,7 @@ NOT_THIS_BUT_THAT = re.compile(
 )
 """'It is not a wave I want, it is a bow.'"""
 IN_PLACE_FIRST = re.compile(
-    r"^\W*(?:instead of|rather than|in place of|in lieu of) (?P<what>(?:an? |the |your )?\w+(?:[ -]\w+)?),? (?P<rest>(?:do|give|show|make|have)\b.+)$"
+    r"^\W*(?:instead of|rather than|in place of|in lieu of) (?P<what>(?:an? |the |your |that |this )?\w+(?:[ -]\w+)?),? (?P<rest>(?:do|give|show|make|have)\b.+)$"
 )
 NOT_THAT_PART = re.compile(
     r"^\W*not (?P<what>(?:with )?(?:the|your) (?:left|right) (?:hand|arm|shoulder|ear|eye|elbow|knee|cheek|wrist|hip)),? (?P<rest>(?!but\b).*\b(?:left|right) one\b.*)$"

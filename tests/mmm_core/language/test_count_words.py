@@ -16,6 +16,7 @@ from mmm_core.language.count_words import count_asked, with_count
         ("clap three times", 3), ("Clap 3 times.", 3), ("wave twice", 2), ("nod once", 1), ("bow thrice", 3), ("clap 3x", 3),
         ("two quick nods", 2), ("do four waves using the right hand", 4), ("left fist forward, three hits", 3),
         ("just one clap", 1), ("a single nod", 1), ("tug at the rope four times with one hand", 4), ("clap ten times", 10),
+        ("clap twice more", 2), ("three deep breaths", 3), ("draw two more circles", 2), ("one quick dab", 1),
     ],
 )  # fmt: skip
 def test_a_number_of_strokes_is_read(text: str, count: int) -> None:
@@ -27,6 +28,7 @@ def test_a_number_of_strokes_is_read(text: str, count: int) -> None:
     [
         "", "wave", "raise two arms", "hold both hands up for three seconds", "give me five", "at once, wave", "turn 90 degrees",
         "once you are done, bow", "bow once more", "wave twice and nod three times", "clap 100 times", "point at the two cars",
+        "chew thirty-two times", "as if five hundred people watched", "disco at 0.5x", "the other one draws a circle",
         "point at 3 o'clock", "raise one hand", "wave to two people", "show two fingers", "raise your left arm for four beats",
         "stretch like you're six years old", "hold your arms up for three breaths", "cross your arms for five heartbeats",
         "do the one two punches", "drum as if you were on six espressos", "nod like somebody who has had three coffees",
