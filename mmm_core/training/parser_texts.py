@@ -9,10 +9,10 @@ from typing import NamedTuple
 from mmm_core.corpus.denials import MEANT, NOTHING, denial_patterns, draw_denial
 from mmm_core.corpus.labelled_sentences import LabelledSentence, load_labelled_sentences
 from mmm_core.corpus.marked_sentences import TaggedSentence, joined, load_marked_sentences
-from mmm_core.language.gesture_steps import NO_GESTURE, ArmGesture, arm_of
+from mmm_core.language.gesture_steps import NO_GESTURE, ArmGesture, arm_of, is_all_gestures
 from mmm_core.language.inflection import gerund
 from mmm_core.language.limbs import is_gesture_verb
-from mmm_core.language.plain_gestures import gestures, plain_command
+from mmm_core.language.plain_gestures import gestures, may_deny, plain_command
 from mmm_core.language.tagged_words import AGAIN, BEGINS, DENIED, FOR_ALL, INSIDE, marked_commands
 from mmm_core.training.gesture_texts import Texts
 from mmm_core.training.slips import slip
@@ -21,10 +21,15 @@ _SHARE_WITHOUT_MARKS, _SHARE_WITH_SLIPS, _SHARE_LOWER = 0.2, 0.2, 0.25
 """Shares of sentences as a recogniser hears them, with a slip, and in lower case."""
 _SHARE_OF_CORPUS, _SHARE_SIDED = 0.6, 0.3
 """Shares of gestures put into marked sentences in a phrase of the corpus instead of the plain command, and with a hand."""
-_MARKS = (", ", "; ", " then ", ", then ", ". ", " and then ", " after that ", ", and finally ")
+_MARKS = (", ", ", ", "; ", " then ", ", then ", ". ", " and then ", " and ", ", and ", " after that ", ", and finally ", "! ")
 """Marks and words that join two gestures."""
+_SHARE_ONE_MARK, _SHARE_SHORT = 0.5, 0.4
+"""Share of sentences whose gestures are all joined by the same mark, and of gestures in them that a writer's sentence asks for."""
+_LONGEST_PART = 7
+"""Words of such a sentence, at most."""
 _HOLDS_MORE = frozenset({AGAIN, FOR_ALL, DENIED})
 """Tags of words that belong to more than one command, or to none: other gestures would not fit beside them."""
+_ORDERS = re.compile(r"\b(?:first|second|last|then|before|after|again|other|same)\b", re.IGNORECASE)
 _SHORTEST_GERUND = 6
 """Letters of a gerund, at least: "bring" is none."""
 
@@ -58,6 +63,7 @@ class ParserTexts:
     def __init__(self, rng: random.Random, shares: Shares | None = None) -> None:
         self._rng, self._texts, self._shares = rng, Texts(rng), shares or Shares()
         self._labelled = load_labelled_sentences()
+        self._short = [one for one in self._labelled if _is_short(one)]
         self._patterns = [(one, places) for one in load_marked_sentences() if (places := _places(one))]
         self._denials = denial_patterns()
 
@@ -87,11 +93,18 @@ class ParserTexts:
         return LabelledSentence(drawn.text, ((ArmGesture(arm_of(drawn.text, name), name),),))
 
     def _joined(self) -> LabelledSentence:
-        """Two or three gestures, one after another, between marks."""
+        """Two to four gestures, one after another, between marks."""
         rng = self._rng
-        parts = [self._gesture() for _ in range(rng.choice((2, 2, 3)))]
-        texts = [one.text.rstrip(".!?") for one in parts]
-        return self._spoilt(LabelledSentence(rng.choice(_MARKS).join(texts), tuple(one.steps[0] for one in parts)))
+        parts = [self._part() for _ in range(rng.choice((2, 2, 3, 3, 4)))]
+        said = parts[0].text.rstrip(".!?")
+        marks = (rng.choice(_MARKS),) if rng.random() < _SHARE_ONE_MARK else _MARKS
+        for part in parts[1:]:
+            said += rng.choice(marks) + part.text.rstrip(".!?")
+        return self._spoilt(LabelledSentence(said, tuple(one.steps[0] for one in parts)))
+
+    def _part(self) -> LabelledSentence:
+        """A gesture among several: a phrase, or a writer's short sentence for one gesture."""
+        return self._rng.choice(self._short) if self._rng.random() < _SHARE_SHORT else self._gesture()
 
     def _denial(self) -> LabelledSentence:
         """A sentence with a negative word, which asks for nothing, for another gesture, or for the gesture nevertheless."""
@@ -140,6 +153,12 @@ class ParserTexts:
             words[i] = slip(words[i], rng)
             text = " ".join(words)
         return one._replace(text=text)
+
+
+def _is_short(one: LabelledSentence) -> bool:
+    """Whether a sentence asks for one gesture in a few words, none of which denies or orders anything."""
+    is_one = [len(step) for step in one.steps] == [1] and is_all_gestures(one.steps)
+    return is_one and len(one.text.split()) <= _LONGEST_PART and not may_deny(one.text) and _ORDERS.search(one.text) is None
 
 
 def _places(one: TaggedSentence) -> list[tuple[int, int, bool]]:

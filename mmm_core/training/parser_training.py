@@ -28,9 +28,9 @@ from mmm_core.training.run import Run, Schedule, train
 
 STEPS, BATCH = 7000, 64
 """Optimisation steps, and sentences of a batch."""
-FURTHER_STEPS, FURTHER_RATE = 3500, 0.5
+FURTHER_STEPS, FURTHER_RATE = 1200, 0.3
 """Steps of a parser that learns further, and the factor of its learning rates."""
-FURTHER_SHARES = Shares(labelled=0.7, refilled=0.08, denial=0.03, joined=0.04, outside=0.05)
+FURTHER_SHARES = Shares(labelled=0.55, refilled=0.05, denial=0.03, joined=0.22, outside=0.04)
 RATE, RATE_OF_COPIED = 8e-4, 2e-4
 """Highest learning rates: of new layers, and of the copies of the encoder's layers."""
 DROPOUT, SMOOTHING = 0.1, 0.03
