@@ -37,7 +37,8 @@ _ONCE = re.compile(
 )
 _SINGLE = re.compile(
     r"\b(?:one time|(?:a|one) single|(?:just|only) one)\b|"
-    rf"(?<!other )(?<!left )(?<!right )(?<!this )(?<!that )(?<!the )\bone (?:(?!(?:{_NOT_STROKES}|and|with|more|last|after|by|at|in|on)\b)[a-z-]+ ){{0,2}}"
+    r"(?<!other )(?<!left )(?<!right )(?<!this )(?<!that )(?<!the )"
+    rf"\bone (?:(?!(?:{_NOT_STROKES}|and|with|more|last|after|by|at|in|on)\b)[a-z-]+ ){{0,2}}"
     r"(?:(?:fist|head|arm|karate|high) )?"
     r"(?:bump|pump|shake|five|nod|clap|bow|knock|punch|jab|hook|uppercut|tap|pat|chop|circle|shrug|throw|kiss|dab|salute|facepalm|yawn)\b",
     re.IGNORECASE,

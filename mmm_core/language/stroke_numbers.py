@@ -44,7 +44,8 @@ _FORMS = _OF_STROKES, *(
         rf"{_NUMBER} ?(?:times|x)(?! (?:the |as |a |per )?(?:speed|tempo|slower|faster|bigger|larger|size|two|three|five)\b)",
         rf"\b(?:x ?|times )(?P<n>{'|'.join(NUMBERS)})\b(?! ?{_UNIT}\b)",
         rf"\b(?:count|reps|n|repeat|taps|laps|claps|number of \w+) ?[:=]? ?{_NUMBER}(?! ?{_UNIT}\b)",
-        rf"(?<!\bat )(?<!\bthis )(?<!\bfor )(?<!\bthe )\b(?P<n>once(?=$|[,.;:!?]| (?:please|only|and|with|for|to|using|from|slowly|quickly|over|now)\b)|twice|thrice)\b"
+        r"(?<!\bat )(?<!\bthis )(?<!\bfor )(?<!\bthe )"
+        r"\b(?P<n>once(?=$|[,.;:!?]| (?:please|only|and|with|for|to|using|from|slowly|quickly|over|now)\b)|twice|thrice)\b"
         r"(?! (?:more|again|upon|you|he|she|it|that|this|the|i|they|we|in a|as|over,? size|your|a (?:day|week)|with each)\b)",
         rf"{_SEVERAL} of (?:them|those|these|em)\b(?! (?:are|is|all|big|small|old)\b)",
         rf"{_SEVERAL} (?:in (?:all|total|a row)|all (?:up|told)|on the trot|altogether)\b",

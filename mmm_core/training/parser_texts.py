@@ -21,7 +21,9 @@ _SHARE_WITHOUT_MARKS, _SHARE_WITH_SLIPS, _SHARE_LOWER = 0.2, 0.2, 0.25
 """Shares of sentences as a recogniser hears them, with a slip, and in lower case."""
 _SHARE_OF_CORPUS, _SHARE_SIDED = 0.6, 0.3
 """Shares of gestures put into marked sentences in a phrase of the corpus instead of the plain command, and with a hand."""
-_MARKS = (", ", ", ", "; ", " then ", ", then ", ". ", " and then ", " and ", ", and ", " after that ", ", and finally ", "! ")
+_MARKS = (
+    ", ", ", ", "; ", " then ", ", then ", ". ", " and then ", " and ", ", and ", " after that ", ", and finally ", "! ",
+)  # fmt: skip
 """Marks and words that join two gestures."""
 _SHARE_ONE_MARK, _SHARE_SHORT = 0.5, 0.4
 """Share of sentences whose gestures are all joined by the same mark, and of gestures in them that a writer's sentence asks for."""
@@ -158,7 +160,12 @@ class ParserTexts:
 def _is_short(one: LabelledSentence) -> bool:
     """Whether a sentence asks for one gesture in a few words, none of which denies or orders anything."""
     is_one = [len(step) for step in one.steps] == [1] and is_all_gestures(one.steps)
-    return is_one and len(one.text.split()) <= _LONGEST_PART and not may_deny(one.text) and _ORDERS.search(one.text) is None
+    return (
+        is_one
+        and len(one.text.split()) <= _LONGEST_PART
+        and not may_deny(one.text)
+        and _ORDERS.search(one.text) is None
+    )
 
 
 def _places(one: TaggedSentence) -> list[tuple[int, int, bool]]:

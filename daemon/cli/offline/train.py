@@ -126,10 +126,12 @@ def train(
     torch.set_num_threads(threads)
     if variant and stage != "ablation":
         raise CommandError(f"train {stage}: --variant is for `mmmd train ablation`")
-    if models and stage not in ("average", "parser"):
-        raise CommandError(f"train {stage}: --models is for `mmmd train average` and `mmmd train parser`")
-    if stage == "parser" and len(models) > 1:
-        raise CommandError(f"train parser: --models has {len(models)} files; one parser can learn further")
+    most_models = {"average": len(models), "parser": 1}.get(stage, 0)
+    if len(models) > most_models:
+        raise CommandError(
+            f"train {stage}: --models has {len(models)} files, {most_models} of which can be used; `mmmd train average` takes two "
+            f"or more, `mmmd train parser` one that learns further"
+        )
     if stage == "average":
         return _average(models, out)
     if stage in ("tagger", "gestures", "parser", "choice", "manner"):

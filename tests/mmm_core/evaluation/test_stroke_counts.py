@@ -40,7 +40,7 @@ def test_nearly_all_families_are_counted_within_one_and_most_exactly() -> None:
     assert sum(n == 3 for n in found.values()) > 0.85 * len(found)
 
 
-def test_a_motion_without_the_gesture_has_one_stroke_at_most_and_a_family_without_strokes_none() -> None:
+def test_standing_has_no_strokes_and_a_pose_none_that_are_counted() -> None:
     still = _performance("stand", 1, 0)
     assert count_strokes(still, "hammer", "right") in (0, 1)
     assert count_strokes(still, "salute", "right") is None

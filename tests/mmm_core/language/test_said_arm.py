@@ -60,6 +60,6 @@ def test_the_mirrored_sentence_names_the_other_hand(sentence: str) -> None:
         ("scratch that thing, lefty", "scratch that thing", "scratch that thing"),
     ],
 )
-def test_a_gesture_without_hand_and_direction_takes_it_and_keeps_its_number(said: str, command: str, read: str) -> None:
+def test_a_gesture_without_hand_takes_it_and_keeps_its_number(said: str, command: str, read: str) -> None:
     reading = Reading(said, ((PlainCommand(command, limbs=limbs_of(command)),),))
     assert with_said_arm(reading).steps[0][0].text == read
