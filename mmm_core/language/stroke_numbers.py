@@ -10,7 +10,7 @@ from dataclasses import replace
 from typing import NamedTuple
 
 from mmm_core.language.commands import Reading
-from mmm_core.language.count_words import ADVERBS, NUMBERS, count_asked
+from mmm_core.language.count_words import ADVERBS, NUMBERS, count_asked, with_count
 from mmm_core.language.known_phrases import is_known_phrase
 from mmm_core.language.limbs import is_gesture_verb, limbs_of
 from mmm_core.language.plain_gestures import gesture_of
@@ -73,19 +73,21 @@ class _Mention(NamedTuple):
 
 
 def with_said_number(reading: Reading) -> Reading:
-    """A reading whose one command, a phrase of the corpus without a number, has the number of strokes that the sentence names.
+    """A reading whose one command, a phrase of the corpus without a number, has the number of strokes that the sentence names in the end.
 
     To which of several commands a number belongs is said by its place alone.
     """
     if [len(step) for step in reading.steps] != [1]:
         return reading
     (command,) = reading.steps[0]
-    if count_asked(command.text) is not None or not _is_gesture(command.text):
+    own = count_asked(command.text)
+    number = strokes_said(reading.text) if own is not None or _is_gesture(command.text) else None
+    if number in (None, own):
         return reading
-    number = strokes_said(reading.text)
-    if number is None:
-        return reading
-    text = f"{command.text} {number} times" if number > 1 else f"{command.text} once"
+    if own is None:
+        text = f"{command.text} {number} times" if number > 1 else f"{command.text} once"
+    else:
+        text = (with_count(command.text, number) if number > 1 else None) or command.text
     return replace(reading, steps=((replace(command, text=text, limbs=limbs_of(text)),),), plain=False)
 
 
