@@ -73,7 +73,7 @@ class _Mention(NamedTuple):
 
 
 def with_said_number(reading: Reading) -> Reading:
-    """A reading whose one command, a phrase of the corpus without a number, has the number of strokes that the sentence names in the end.
+    """A reading whose one command, a phrase of the corpus, has the number of strokes that the sentence names in the end.
 
     To which of several commands a number belongs is said by its place alone.
     """
