@@ -75,6 +75,8 @@ def arm_said(sentence: str) -> str:
     'right'
     """
     text = mended(sentence).lower()
+    if "left" not in text and "right" not in text:
+        return ""
     if (corrected := _CORRECTED.search(text)) is not None:
         return corrected["side"]
     found = {

@@ -6,6 +6,7 @@ A command in plain words has lost what stands apart from its verb. The words are
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -27,12 +28,17 @@ _IN_WORDS = {
     "a trio of": 3,
 }
 _VALUES = NUMBERS | ADVERBS | _IN_WORDS | {"double": 2, "triple": 3, "quadruple": 4}
-_STROKE, _DOUBLE, _UNIT, _ASKS = (any_of("stroke_numbers", kind) for kind in ("stroke", "for", "unit", "asks"))
-_NUMBER = (
-    rf"(?<![\w.-])(?P<n>{'|'.join(sorted(NUMBERS | _IN_WORDS, key=len, reverse=True))})"
-    r"(?![\w%-]|[.:]\d| (?:hundred|thousand|thirds?|quarters?|half|point)\b)"
-)
-_SEVERAL = _NUMBER.replace("one|", "").replace("|1)", ")")
+_STROKE, _DOUBLE, _UNIT, _ASKS = (any_of("stroke_numbers", kind) for kind in ("stroke", "double", "unit", "asks"))
+
+
+def _number(words: Iterable[str]) -> str:
+    """A pattern of a number, but not of a larger one, a time of day, a fraction or a part of a word."""
+    any_word = "|".join(sorted(words, key=len, reverse=True))
+    return rf"(?<![\w.-])(?P<n>{any_word})(?![\w%-]|[.:]\d| (?:hundred|thousand|thirds?|quarters?|half|point)\b)"
+
+
+_NUMBER = _number(NUMBERS | _IN_WORDS)
+_SEVERAL = _number(word for word in NUMBERS | _IN_WORDS if word not in ("one", "1"))
 """A number above one: "one" stands for a thing or a person more often than for a stroke."""
 _ADJECTIVES = (
     r"(?:(?!(?:times|of|or|and|to|for|in|at|on|with|seconds?|minutes?|people|kids|children)\b)[a-z'-]+ ){0,2}?"

@@ -54,7 +54,7 @@ def train_parser(
         out: file of the parser.
         folder: where the run keeps its state, from which it goes on; other sentences or steps are another run.
         draw_with: what draws sentences with what they ask for from random numbers; all kinds of `ParserTexts` when None.
-        start: a parser that learns further, at lower rates, above all from labelled sentences; a new one when None.
+        start: a parser that learns further, at lower rates, with more sentences of writers and lists; a new one when None.
         steps: optimisation steps; `STEPS`, or `FURTHER_STEPS` from a parser, when None.
     """
     encoder = load_text_encoder()
