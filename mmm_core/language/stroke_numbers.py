@@ -66,6 +66,9 @@ _PLACE = re.compile(rf"\b{any_of('stroke_numbers', 'place')} $")
 _OTHER = re.compile(rf"\b{any_of('stroke_numbers', 'other')} $")
 _DENIED = re.compile(rf"\b{any_of('stroke_numbers', 'denied')} $")
 _CORRECTS = re.compile(rf"\b{any_of('stroke_numbers', 'corrects')}\b")
+_ANY_NUMBER = re.compile(
+    rf"\d|\b(?:{'|'.join(word for word in _VALUES if word.isalpha())}|half|dozen|couple|pair|trio|single)\b"
+)
 _TIMES = re.compile(r" ?(?:times|x)\b")
 _COUNTING = re.compile(rf"[ ,.!]+(?:and )?(?:{'|'.join(NUMBERS)})\b")
 """The next number of somebody who counts: "one, two, three"."""
@@ -113,6 +116,8 @@ def strokes_said(sentence: str) -> int | None:
 
 
 def _mentions(text: str) -> list[_Mention]:
+    if _ANY_NUMBER.search(text) is None:
+        return []
     found: dict[int, _Mention] = {}
     for form in _FORMS:
         for match in form.finditer(text):
