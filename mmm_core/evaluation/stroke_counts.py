@@ -48,7 +48,10 @@ def count_strokes(shown: PostureFeatures, family: str, side: str = "", direction
     if counted is None:
         return None
     names, turning_points = counted
-    n = _turns(shown, reference(Gesture(family, own_side, _SHOWS_AXIS, direction)), names)
+    ref = reference(Gesture(family, own_side, _SHOWS_AXIS, direction))
+    if not any(_moves(shown, ref, name) for name in names):
+        return 0
+    n = _turns(shown, ref, names)
     return _NUMBERS[int(np.argmin(np.abs(np.array(turning_points) - n)))]
 
 
@@ -72,13 +75,25 @@ def _turns(shown: PostureFeatures, ref: Reference, names: tuple[str, ...]) -> in
     of_shown, of_reference = channels(shown), channels(ref.shown)
     for name in names:
         clean = of_reference[name][ref.core]
-        axis = np.linalg.svd(clean - clean.mean(0), full_matrices=False)[2][0]
+        axis = _axis(clean)
         signal, meant = of_shown[name] @ axis, clean @ axis
         turn = _TURN_SHARE * float(np.ptp(meant))
         far = np.flatnonzero(np.abs(meant - meant[0]) > 0.5 * turn)
         sense = 1.0 if not len(far) or meant[far[0]] > meant[0] else -1.0
         n += len(_peaks_that_fall(sense * signal, turn))
     return n
+
+
+def _moves(shown: PostureFeatures, ref: Reference, name: str) -> bool:
+    """Whether a channel moves as far along its axis as a stroke needs to."""
+    clean = channels(ref.shown)[name][ref.core]
+    axis = _axis(clean)
+    return bool(np.ptp(channels(shown)[name] @ axis) > _TURN_SHARE * np.ptp(clean @ axis))
+
+
+def _axis(path: Array) -> Array:
+    """The direction (D,) in which a path (T, D) extends most."""
+    return np.asarray(np.linalg.svd(path - path.mean(0), full_matrices=False)[2][0])
 
 
 def _peaks_that_fall(signal: Array, turn: float) -> list[int]:

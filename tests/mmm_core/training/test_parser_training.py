@@ -102,7 +102,7 @@ def test_the_batches_of_a_step_do_not_depend_on_what_was_drawn_before() -> None:
 @pytest.mark.long
 def test_another_process_goes_on_with_the_same_run() -> None:
     """The order of sets, and with it their text, differs from process to process."""
-    said = "from mmm_core.training.parser_training import _data_key; print(_data_key(5))"
+    said = "from mmm_core.training.parser_training import Shares, _data_key; print(_data_key(5, Shares(), None))"
     names = {
         subprocess.run(
             [sys.executable, "-c", said], env={**os.environ, "PYTHONHASHSEED": seed}, capture_output=True, text=True,
