@@ -14,14 +14,12 @@ from numpy.typing import NDArray
 
 from mmm_core.corpus.families import FAMILIES
 from mmm_core.evaluation.reference import Reference, channels, palms
+from mmm_core.evaluation.stroke_counts import TURN_SHARE, first_sense, turning_points
 from mmm_core.motion.posture_features import PostureFeatures
-from mmm_core.motion.repetitions import peaks_beyond
 from mmm_core.recognition.signs import shows
 
 Array = NDArray[np.floating]
 Checks = dict[str, bool]
-TURN_SHARE = 0.4
-"""Share of the gesture's range by which a stroke rises and falls at least."""
 TURNS_SEEN = (1.0, 0.9, 0.8)
 """Parts of that share that are tried in turn until the reference shows a stroke: a slow kiss falls by 0.97 of it."""
 PACE_RATIO = 1.42
@@ -90,15 +88,15 @@ def _strokes(s: PostureFeatures, ref: Reference, core: slice) -> Checks:
     for name in ref.acting:
         signal, clean = ref.along(s, name)[wide], ref.along(ref.shown, name)[ref.core]
         reach = TURN_SHARE * float(np.ptp(clean))
-        far = np.flatnonzero(np.abs(clean - clean[0]) > 0.5 * reach)
-        out = 1.0 if not len(far) or clean[far[0]] > clean[0] else -1.0  # sense of the first stroke along the axis
-        turn = next((share * reach for share in TURNS_SEEN if _turning(out * clean, share * reach)), reach)
-        made.append(_turning(out * signal, turn))
-        meant.append(_turning(out * clean, turn))
+        out = first_sense(clean, reach)
+        turn = next((share * reach for share in TURNS_SEEN if turning_points(out * clean, share * reach)), reach)
+        made.append(turning_points(out * signal, turn))
+        meant.append(turning_points(out * clean, turn))
         if len(made[-1]) == len(meant[-1]) > 1:
             checks["pace"] &= _steady(made[-1], meant[-1], PACE_RATIO)
             turns = [
-                sorted([*peaks, *_turning(-out * x, turn)]) for peaks, x in ((made[-1], signal), (meant[-1], clean))
+                sorted([*peaks, *turning_points(-out * x, turn)])
+                for peaks, x in ((made[-1], signal), (meant[-1], clean))
             ]
             checks["pace"] &= len(turns[0]) != len(turns[1]) or _steady(turns[0], turns[1], HALF_PACE_RATIO)
         checks["size"] &= _sized(out * signal, out * clean, turn)
@@ -113,7 +111,7 @@ def _sized(made: Array, meant: Array, turn: float) -> bool:
     """Whether the distances between turning points match the reference's and each other."""
     ways = []
     for signal in (made, meant):
-        turns = sorted([0, *_turning(signal, turn), *_turning(-signal, turn), len(signal) - 1])
+        turns = sorted([0, *turning_points(signal, turn), *turning_points(-signal, turn), len(signal) - 1])
         way = np.abs(np.diff(signal[turns])) if len(signal) else np.zeros(1)
         ways.append(way[way > 0.5 * turn])
     if not len(ways[0]) or not len(ways[1]):
@@ -121,12 +119,6 @@ def _sized(made: Array, meant: Array, turn: float) -> bool:
     ratio = float(np.median(ways[0]) / np.median(ways[1]))
     even = [float(w.min() / w.max()) for w in ways]
     return LEAST_SIZE < ratio < SIZE_RATIO and even[0] > EVEN_SHARE * even[1]
-
-
-def _turning(signal: Array, turn: float) -> list[int]:
-    """Frames of the peaks, without a last peak after which the signal does not fall: its frame is arbitrary if nothing moves."""
-    found = peaks_beyond(signal, turn)
-    return found[:-1] if found and signal[found[-1]] - signal[found[-1] :].min() < turn else found
 
 
 def _steady(made: list[int], meant: list[int], most: float) -> bool:
@@ -187,7 +179,7 @@ def _touches(made: Array, meant: Array, ref: Reference) -> bool:
     turn = TURN_SHARE * float(np.ptp(meant[ref.core]))
     if not repeats(ref) or turn < TOUCH_OFF_M / 2:
         return True
-    again, clean = _turning(-made, turn), _turning(-meant, turn)
+    again, clean = turning_points(-made, turn), turning_points(-meant, turn)
     return len(again) == len(clean) and float(made[again].max()) < near + 2 * TOUCH_OFF_M
 
 

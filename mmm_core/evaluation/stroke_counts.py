@@ -23,7 +23,7 @@ _NUMBERS = range(1, 9)
 """Numbers of strokes of reference performances."""
 _SHOWS_AXIS = 3
 """Strokes of the reference performance that gives the axes."""
-_TURN_SHARE = 0.4
+TURN_SHARE = 0.4
 """Share of the gesture's range by which a stroke rises and falls at least."""
 _IN_CYCLES = frozenset({"shake_head", "sway"})
 """Families of which `checks.count` counts each swing to either side, and a sentence both as one."""
@@ -77,10 +77,8 @@ def _turns(shown: PostureFeatures, ref: Reference, names: tuple[str, ...]) -> in
         clean = of_reference[name][ref.core]
         axis = _axis(clean)
         signal, meant = of_shown[name] @ axis, clean @ axis
-        turn = _TURN_SHARE * float(np.ptp(meant))
-        far = np.flatnonzero(np.abs(meant - meant[0]) > 0.5 * turn)
-        sense = 1.0 if not len(far) or meant[far[0]] > meant[0] else -1.0
-        n += len(_peaks_that_fall(sense * signal, turn))
+        turn = TURN_SHARE * float(np.ptp(meant))
+        n += len(turning_points(first_sense(meant, turn) * signal, turn)) if turn > 0 else 0
     return n
 
 
@@ -88,7 +86,7 @@ def _moves(shown: PostureFeatures, ref: Reference, name: str) -> bool:
     """Whether a channel moves as far along its axis as a stroke needs to."""
     clean = channels(ref.shown)[name][ref.core]
     axis = _axis(clean)
-    return bool(np.ptp(channels(shown)[name] @ axis) > _TURN_SHARE * np.ptp(clean @ axis))
+    return bool(np.ptp(channels(shown)[name] @ axis) > TURN_SHARE * np.ptp(clean @ axis))
 
 
 def _axis(path: Array) -> Array:
@@ -96,6 +94,13 @@ def _axis(path: Array) -> Array:
     return np.asarray(np.linalg.svd(path - path.mean(0), full_matrices=False)[2][0])
 
 
-def _peaks_that_fall(signal: Array, turn: float) -> list[int]:
-    found = peaks_beyond(signal, turn) if turn > 0 else []
+def first_sense(signal: Array, turn: float) -> float:
+    """The sense, 1 or -1, of the first stroke of a signal (T,) whose strokes rise and fall by `turn`."""
+    far = np.flatnonzero(np.abs(signal - signal[0]) > 0.5 * turn)
+    return 1.0 if not len(far) or signal[far[0]] > signal[0] else -1.0
+
+
+def turning_points(signal: Array, turn: float) -> list[int]:
+    """Frames of the peaks, without a last peak after which the signal does not fall: its frame is arbitrary if nothing moves."""
+    found = peaks_beyond(signal, turn)
     return found[:-1] if found and signal[found[-1]] - signal[found[-1] :].min() < turn else found

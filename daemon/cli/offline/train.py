@@ -95,7 +95,7 @@ def train(
             gestures trains what tells which gesture other words mean, from the phrases that ship (an hour, no recipe);
             parser trains what tells which gestures a sentence asks for, from the labelled sentences (an hour, no recipe), or
             one of --models further, on more of them;
-            choice finds the weights with which one of the ways to read a sentence is chosen (two minutes, no recipe);
+            choice finds the weights with which one of the ways to read a sentence is chosen (eight minutes, no recipe);
             manner finds the weights of words that ask for a tempo or a size, and manner_choice.txt beside --out (a minute);
             average writes the mean of --models; ablation trains variants of a recipe and prints what the probes and real
             captions say of each.
@@ -110,7 +110,7 @@ def train(
         sample_every: steps between pictures in the run's samples/; 0 for none.
         tensorboard: write TensorBoard events as well (extra `train`).
         variant: names of variants (ablation); all when none is given.
-        models: checkpoints, two or more, of which the mean is taken (average); the parser that learns further (parser).
+        models: average takes the mean of two checkpoints or more; parser trains one parser further.
         yes: begin without a question. Only a person at a terminal is asked, and only before a run that is new.
     """
     os.environ.setdefault("OMP_WAIT_POLICY", "passive")
