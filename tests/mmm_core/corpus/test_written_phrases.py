@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from mmm_core.corpus.heldout import read_sentences
+from mmm_core.corpus.labelled_sentences import LABELLED_SENTENCES
 from mmm_core.corpus.written_phrases import load_written_phrases
 from mmm_core.errors import TrainingDataError
 from mmm_core.language.plain_gestures import gestures
@@ -25,27 +26,10 @@ def test_each_gesture_has_phrases_and_no_phrase_has_two_gestures() -> None:
     assert len(every) - len(set(every)) < 0.01 * len(every)
 
 
-@pytest.mark.parametrize(
-    "name",
-    [
-        "dev",
-        "dev_2",
-        "dev_3",
-        "test",
-        "test_singles",
-        "test_1",
-        "test_2",
-        "test_3",
-        "test_4",
-        "test_5",
-        "seen",
-        "phrases_dev",
-        "phrases_test",
-    ],
-)
+@pytest.mark.parametrize("name", sorted(path.stem for path in LABELLED_SENTENCES.parent.glob("words_*.jsonl")))
 def test_no_phrase_is_a_sentence_of_a_set_that_measures(name: str) -> None:
     every = {_letters(phrase) for phrases in load_written_phrases().values() for phrase in phrases}
-    assert not every & {_letters(sentence.text) for sentence in read_sentences(f"words_{name}")}
+    assert not every & {_letters(sentence.text) for sentence in read_sentences(name)}
 
 
 @pytest.mark.parametrize("line", ["knok => rap at the gate", "knock", "knock =>", "rap at the gate"])
