@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterator, Sequence
 
 import numpy as np
 
+from mmm_core.corpus.families import FAMILIES
 from mmm_core.corpus.heldout import PROBES, Probe
 from mmm_core.evaluation.probes import judge
 from mmm_core.evaluation.reconstruction import Features, performed
@@ -44,9 +45,10 @@ def showable(
 
 
 def performances(probe: Probe, on_robot: OnRobot) -> Iterator[PostureFeatures]:
-    """The corpus's own performances of a probe, as a robot shows them."""
+    """The corpus's own performances of a probe, as a robot shows them; a gesture without strokes as often as it is to be done."""
+    times = (probe.count or 1) if not FAMILIES[probe.family].counts else 1
     for seed in range(PERFORMANCES):
-        motion = on_robot(as_motion(performed(probe, seed), probe.text))
+        motion = on_robot(as_motion(np.tile(performed(probe, seed), (times, 1)), probe.text))
         yield posture_features(motion.joints_m, motion.head_quat_wxyz, motion.forearm_twist_rad)
 
 

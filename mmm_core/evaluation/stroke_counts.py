@@ -1,4 +1,4 @@
-"""Counts the strokes of any gesture that has strokes: turning points along the axis of its reference performance.
+"""Counts the strokes of a gesture, or how often a gesture without strokes is done: turning points along the axis of its reference.
 
 How many turning points the reference performance has with one, two, ... eight strokes tells what a number of them means, so no
 table of families is needed. `recognition.checks.count` counts some families without the corpus.
@@ -27,11 +27,10 @@ TURN_SHARE = 0.4
 """Share of the gesture's range by which a stroke rises and falls at least."""
 _IN_CYCLES = frozenset({"shake_head", "sway"})
 """Families of which `checks.count` counts each swing to either side, and a sentence both as one."""
-_CHANNELS = ("left", "right", "head", "trunk")
 
 
 def count_strokes(shown: PostureFeatures, family: str, side: str = "", direction: str = "") -> int | None:
-    """The strokes of a motion of a family; None where they cannot be told from each other.
+    """The strokes of a motion of a family, or how often a gesture without strokes is done; None where that cannot be told.
 
     Args:
         shown: the motion.
@@ -44,6 +43,8 @@ def count_strokes(shown: PostureFeatures, family: str, side: str = "", direction
     sides = FAMILIES[family].sides
     sides_in_turn = (side, shown.arms, "right", *sides)
     own_side = next((one for one in sides_in_turn if one in sides), "")
+    if not FAMILIES[family].counts:
+        return _times_done(shown, reference(Gesture(family, own_side, direction=direction)))
     counted = _counted_channels(family, own_side, direction)
     if counted is None:
         return None
@@ -58,15 +59,27 @@ def count_strokes(shown: PostureFeatures, family: str, side: str = "", direction
 @lru_cache(maxsize=512)
 def _counted_channels(family: str, side: str, direction: str) -> tuple[tuple[str, ...], tuple[int, ...]] | None:
     """Channels whose turning points tell the number of strokes, and how many there are with each number."""
-    if not FAMILIES[family].counts:
-        return None
     performed = [reference(Gesture(family, side, n, direction)) for n in _NUMBERS]
     axes = reference(Gesture(family, side, _SHOWS_AXIS, direction))
-    for names in (axes.acting, *((name,) for name in _CHANNELS)):
+    paths = channels(axes.shown)
+    by_reach = sorted(paths, key=lambda name: -float(np.linalg.norm(np.ptp(paths[name][axes.core], axis=0))))
+    for names in (axes.acting, *((name,) for name in by_reach)):
         found = tuple(_turns(one.shown, axes, names) for one in performed)
         if names and all(few < more for few, more in pairwise(found)):
             return names, found
     return None
+
+
+def _times_done(shown: PostureFeatures, ref: Reference) -> int | None:
+    """How often a gesture without strokes is done, the last time perhaps without the way back; None for standing."""
+    done = expected = 0
+    for name in ref.acting:
+        signal, meant = ref.along(shown, name), ref.along(ref.shown, name)
+        turn = TURN_SHARE * float(np.ptp(meant))
+        sense = first_sense(meant, turn)
+        done += len(peaks_beyond(sense * signal, turn))
+        expected += len(peaks_beyond(sense * meant, turn))
+    return round(done / expected) if expected else None
 
 
 def _turns(shown: PostureFeatures, ref: Reference, names: tuple[str, ...]) -> int:

@@ -60,14 +60,14 @@ class MotionGeneration:
         with torch.inference_mode():
             self._read = interpret(engine, text)
             self._text = self._read.reading.text
-            steps, self._counts = list(self._read.steps), [None] * len(self._read.steps)
+            steps, self._repetitions = list(self._read.steps), [None] * len(self._read.steps)
             if n_frames is None and engine.model.is_ours:
-                steps, self._counts = with_few_strokes(engine, steps)
+                steps, self._repetitions = with_few_strokes(engine, steps)
             self._steps = steps_of(engine, steps, n_frames) if steps else []
         self._verdict, self._mirrored = self._read.verdict, self._read.is_mirrored
         self._first_steps = [FirstStep() for _ in self._steps[0].commands] if self._steps else []
         self._candidates = candidates
-        n_tokens = sum(expected_tokens(s.n_tokens, n) for s, n in zip(self._steps, self._counts, strict=False))
+        n_tokens = sum(expected_tokens(s.n_tokens, n) for s, n in zip(self._steps, self._repetitions, strict=False))
         n_tokens += TRANSITION_TOKENS * max(0, len(self._steps) - 1)
         self.n_frames = n_tokens * FRAMES_PER_TOKEN if n_frames is None else n_frames
         if len(self._steps) == 1 and n_frames is None:
@@ -163,10 +163,10 @@ class MotionGeneration:
         first = self._first_steps[k] if i == 0 and n == 1 else None
         candidates = self._fill(command.states, [row] * n, seeds, settings, first)
         ids = candidates[0] if n == 1 else self._likeliest(command.states, candidates)
-        count = self._counts[i]
-        if count is None:
+        repetition = self._repetitions[i]
+        if repetition is None:
             return ids
-        many = repeated(self._engine, command, ids, count, settings.opening)
+        many = repeated(self._engine, command, ids, repetition, settings.opening)
         return self._as_said(i, seeds[0]) if many is None else many
 
     def _as_said(self, i: int, seed: int) -> Tensor:

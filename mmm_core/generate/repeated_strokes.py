@@ -1,5 +1,7 @@
 """Makes as many strokes as a text names: the model performs two of them, and the tokens of one period are repeated.
 
+A gesture without strokes begins and ends at rest, so the tokens of the whole are repeated ("salute twice").
+
 Parallel decoding keeps the sense of a repeated gesture and loses count of its strokes, the more of them the oftener, but two
 strokes are nearly always right (docs/model.md). All strokes of a gesture take the same whole number of tokens, so a text with one
 more stroke is longer by that number, and the length predictor tells it without seeing the motion. It errs now and then; of
@@ -11,6 +13,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 from fractions import Fraction
+from typing import NamedTuple
 
 import torch
 from torch import Tensor
@@ -19,6 +22,7 @@ from mmm_core.generate.interpretation import ReadCommand
 from mmm_core.generate.motion_model import MotionModel
 from mmm_core.language.count_words import count_asked, with_count
 from mmm_core.language.mirroring import mirror_words
+from mmm_core.language.whole_gestures import once
 from mmm_core.model.tokens import FRAMES_PER_TOKEN
 
 PERFORMED = 2
@@ -39,39 +43,58 @@ _FARTHEST = 1.0
 """Largest distance between the two ends of a repeated part, as a share of its movement; the model makes such strokes itself."""
 
 
+class Repetition(NamedTuple):
+    """How often a command is to be done.
+
+    Attributes:
+        times: strokes, or performances of the whole gesture.
+        of_whole: whether the gesture has no strokes.
+    """
+
+    times: int
+    of_whole: bool = False
+
+
 def with_few_strokes(
     engine: MotionModel, steps: Sequence[tuple[ReadCommand, ...]]
-) -> tuple[list[tuple[ReadCommand, ...]], list[int | None]]:
-    """The steps with two strokes in place of many, as the model reads them, and the number of strokes of each step.
+) -> tuple[list[tuple[ReadCommand, ...]], list[Repetition | None]]:
+    """The steps with two strokes in place of many, or one whole gesture, as the model reads them, and what is to be repeated.
 
-    The number is None where a step stays as it is: several commands at once, no number in the words, or a number that the model
+    This is None where a step stays as it is: several commands at once, no number in the words, or a number that the model
     makes itself.
     """
     found: list[tuple[ReadCommand, ...]] = []
-    counts: list[int | None] = []
+    repetitions: list[Repetition | None] = []
     for step in steps:
-        words = _words_of(step[0], PERFORMED) if len(step) == 1 else None
-        count = None if words is None else count_asked(step[0].text)
-        found.append(step if words is None else (replace(step[0], states=engine.read([words])),))
-        counts.append(count)
-    return found, counts
+        words, repetition = _few_of(step[0]) if len(step) == 1 else ("", None)
+        found.append((replace(step[0], states=engine.read([words])),) if words else step)
+        repetitions.append(repetition)
+    return found, repetitions
 
 
-def expected_tokens(n_tokens: int, count: int | None) -> int:
-    """Roughly the tokens of a motion whose two strokes take `n_tokens`, before its period is known."""
-    return n_tokens if count is None else n_tokens + (count - PERFORMED) * (n_tokens // 4)
+def expected_tokens(n_tokens: int, repetition: Repetition | None) -> int:
+    """Roughly the tokens of a motion whose two strokes or one whole gesture take `n_tokens`, before its period is known."""
+    if repetition is None:
+        return n_tokens
+    times, of_whole = repetition
+    return times * n_tokens if of_whole else n_tokens + (times - PERFORMED) * (n_tokens // 4)
 
 
-def repeated(engine: MotionModel, command: ReadCommand, ids: Tensor, count: int, opening: int) -> Tensor | None:
-    """(L', C) ids with `count` strokes, from ids (L, C) with two; None where no part of them returns to its beginning.
+def repeated(
+    engine: MotionModel, command: ReadCommand, ids: Tensor, repetition: Repetition, opening: int
+) -> Tensor | None:
+    """(L', C) ids of all strokes, from ids (L, C) of two; None where no part of them returns to its beginning.
 
     Args:
         engine: predicts lengths, and decodes the motion that is compared with itself.
-        command: the command, whose words name `count`.
-        ids: its two strokes.
-        count: strokes wanted.
+        command: the command, whose words name the number.
+        ids: its two strokes, or the whole gesture.
+        repetition: what is wanted.
         opening: tokens at the beginning that stay.
     """
+    if repetition.of_whole:
+        return torch.cat([ids] * repetition.times)
+    count = repetition.times
     features = engine.model.tokenizer.decode(ids[None])[0].reshape(len(ids), -1)
     best, found = _FARTHEST, None
     for period in periods(engine, command):
@@ -98,6 +121,17 @@ def periods(engine: MotionModel, command: ReadCommand) -> list[int]:
         Fraction(lengths[b] - lengths[a], b - a) for a in words for b in words if 0 < b - a <= _MOST_STROKES_APART
     }
     return sorted(int(p) for p in several if p.denominator == 1 and p in _PERIODS)
+
+
+def _few_of(command: ReadCommand) -> tuple[str, Repetition | None]:
+    """The words of two strokes or one whole gesture, and what is to be repeated; no words where a command stays as it is."""
+    count = count_asked(command.text)
+    if count is None:
+        return "", None
+    if words := once(command.text):
+        return mirror_words(words) if command.is_mirrored else words, Repetition(count, of_whole=True)
+    words = _words_of(command, PERFORMED)
+    return (words, Repetition(count)) if words else ("", None)
 
 
 def _words_of(command: ReadCommand, count: int) -> str | None:

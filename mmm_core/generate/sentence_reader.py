@@ -45,6 +45,7 @@ from mmm_core.language.sure_reading import is_sure, needs_networks, needs_tags, 
 from mmm_core.language.tagged_manner import manner_phrases, with_left_manner, with_likely_manner, with_plain_manner
 from mmm_core.language.tagged_reading import can_be_read, reading_of, without_splits
 from mmm_core.language.tagged_words import MANNERS, MarkedCommands, likely_tags, marked_commands, words_of
+from mmm_core.language.whole_gestures import with_plain_repetitions
 from mmm_core.model.text import MAX_WORD_PIECES, MiniLm, strip_emoji
 
 _DIVISIONS = 8
@@ -82,7 +83,8 @@ class SentenceReader:
 
     def read(self, text: str) -> Reading:
         """The commands of a text."""
-        return without_hard_phrases(text, with_said_number(with_said_arm(self._read(text))))
+        found = without_hard_phrases(text, with_said_number(with_said_arm(self._read(text))))
+        return with_plain_repetitions(found, self._models.classes)
 
     def _read(self, text: str) -> Reading:
         by_rules = read(text)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 
 from mmm_core.corpus.families import FAMILIES
@@ -40,10 +41,19 @@ def test_nearly_all_families_are_counted_within_one_and_most_exactly() -> None:
     assert sum(n == 3 for n in found.values()) > 0.85 * len(found)
 
 
-def test_standing_has_no_strokes_and_a_pose_none_that_are_counted() -> None:
+def test_standing_has_no_strokes_and_shows_no_gesture() -> None:
     still = _performance("stand", 1, 0)
-    assert count_strokes(still, "hammer", "right") == count_strokes(still, "fist_pump", "right") == 0
-    assert count_strokes(still, "salute", "right") is None
+    assert {count_strokes(still, name, "right") for name in ("hammer", "fist_pump", "salute")} == {0}
+    assert count_strokes(still, "stand") is None
+
+
+@pytest.mark.parametrize("name", ["salute", "dab", "drink", "high_five", "yawn", "lean", "look", "stretch"])
+@pytest.mark.parametrize("n", [1, 2, 3])
+def test_a_gesture_without_strokes_is_counted_as_a_whole(name: str, n: int) -> None:
+    family = FAMILIES[name]
+    direction = (family.directions or ("",))[0]
+    once = performed(Probe("", name, family.limb, direction=direction), 3)
+    assert count_strokes(shown(np.tile(once, (n, 1))), name, "", direction) == n
 
 
 @pytest.mark.parametrize("name", sorted(_NOT_TOLD))

@@ -9,7 +9,7 @@ import torch
 from mmm_core.generate import repeated_strokes
 from mmm_core.generate.engine import Engine
 from mmm_core.generate.interpretation import interpret
-from mmm_core.generate.repeated_strokes import expected_tokens, periods, repeated, with_few_strokes
+from mmm_core.generate.repeated_strokes import Repetition, expected_tokens, periods, repeated, with_few_strokes
 from mmm_core.model.tokens import MAX_TOKENS
 from mmm_core.motion.features import mirror
 from mmm_core.motion.repetitions import strokes_of
@@ -47,6 +47,17 @@ def test_strokes_are_as_many_as_the_text_names(engine: Engine, count: int) -> No
     assert found is not None and len(found.frames) == count
 
 
+@pytest.mark.parametrize(
+    "text", few_and_long(["salute {}"], ["take {} sips from your glass", "give me {} high fives"])
+)
+def test_a_gesture_without_strokes_is_done_as_often_as_a_text_says(engine: Engine, text: str) -> None:
+    numbers = ("two times", "four times") if text == "salute {}" else ("two", "four")
+    two, four = (tokens(engine, text.format(number)) for number in numbers)
+    once = len(two) // 2
+    assert four == two + two[once:] * 2, "all but the opening of the first, which the draft has given already"
+    assert two[once + 2 :] == two[2:once]
+
+
 def test_each_step_of_a_text_has_its_own_number(engine: Engine) -> None:
     made = engine.generate("nod five times, then clap four times")
     frames = [round(scene.end_s * 20) for scene in made.scenes]
@@ -77,7 +88,7 @@ def test_the_expected_length_is_near_the_length(engine: Engine) -> None:
     for text in ("nod six times", "bow five times", "clap eight times"):
         made = engine.begin(text)
         assert 0.7 < made.n_frames / len(made.result().motion.joints_m) < 1.4, text
-    assert expected_tokens(12, None) == 12
+    assert expected_tokens(12, None) == 12 and expected_tokens(12, Repetition(3, of_whole=True)) == 36
 
 
 def test_a_motion_that_does_not_return_is_not_repeated(engine: Engine) -> None:
@@ -86,7 +97,7 @@ def test_a_motion_that_does_not_return_is_not_repeated(engine: Engine) -> None:
     assert periods(engine, command)
     ids = torch.arange(6).reshape(2, 3)
     with torch.inference_mode():
-        assert repeated(engine, command, ids, 6, 2) is None
+        assert repeated(engine, command, ids, Repetition(6), 2) is None
 
 
 def test_strokes_that_cannot_be_repeated_are_the_model_s_own(engine: Engine, monkeypatch: pytest.MonkeyPatch) -> None:
