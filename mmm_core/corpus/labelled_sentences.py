@@ -9,6 +9,7 @@ for nothing.
 from __future__ import annotations
 
 import re
+from itertools import chain
 from pathlib import Path
 from typing import NamedTuple
 
@@ -35,11 +36,13 @@ class LabelledSentence(NamedTuple):
         text: the sentence.
         steps: gestures, step by step; none where it asks for nothing.
         manners: tempos and sizes that a writer's label has for any of them; none of a sentence that was put together.
+        counts: how often each gesture is to be done, None where that is not said, in the order of the steps; None where it is not known.
     """
 
     text: str
     steps: GestureSteps
     manners: frozenset[str] = frozenset()
+    counts: tuple[int | None, ...] | None = None
 
 
 def load_labelled_sentences(folder: Path = LABELLED_SENTENCES) -> list[LabelledSentence]:
@@ -53,7 +56,7 @@ def load_labelled_sentences(folder: Path = LABELLED_SENTENCES) -> list[LabelledS
 
 
 def read_labelled(line: str, path: Path = LABELLED_SENTENCES) -> LabelledSentence:
-    """A line as a sentence with what it asks for; numbers and what is denied are skipped.
+    """A line as a sentence with what it asks for; what is denied is skipped.
 
     >>> read_labelled("before you clap, left hand up => left raise; clap x2").steps
     ((ArmGesture(arm='left', gesture='raise'),), (ArmGesture(arm='any', gesture='clap'),))
@@ -65,8 +68,10 @@ def read_labelled(line: str, path: Path = LABELLED_SENTENCES) -> LabelledSentenc
     of_steps = asked.split(";") if asked.strip() else []
     found = [[_command(said, line, path) for said in step.split("+")] for step in of_steps]
     steps = tuple(tuple(gesture for gesture, _ in step) for step in found)
-    manners = frozenset(word for step in found for _, manner in step for word in manner.split())
-    return LabelledSentence(text.strip(), steps, manners & _MANNERS)
+    said = [manner.split() for step in found for _, manner in step]
+    manners = frozenset(chain.from_iterable(said)) & _MANNERS
+    counts = tuple(next((int(word[1:]) for word in words if word[0] == "x"), None) for words in said)
+    return LabelledSentence(text.strip(), steps, manners, counts)
 
 
 def _command(said: str, line: str, path: Path) -> tuple[ArmGesture, str]:

@@ -1,6 +1,6 @@
 """Counts the strokes of a gesture, or how often a gesture without strokes is done: turning points along the axis of its reference.
 
-How many turning points the reference performance has with one, two, ... eight strokes tells what a number of them means, so no
+How many turning points the reference performance has with one, two, ... twelve strokes tells what a number of them means, so no
 table of families is needed. `recognition.checks.count` counts some families without the corpus.
 """
 
@@ -14,12 +14,13 @@ from numpy.typing import NDArray
 
 from mmm_core.corpus.families import FAMILIES, Gesture
 from mmm_core.evaluation.reference import Reference, channels, reference
+from mmm_core.language.count_words import MOST
 from mmm_core.motion.posture_features import PostureFeatures
 from mmm_core.motion.repetitions import peaks_beyond
 from mmm_core.recognition import checks
 
 Array = NDArray[np.floating]
-_NUMBERS = range(1, 9)
+_NUMBERS = range(1, MOST + 1)
 """Numbers of strokes of reference performances."""
 _SHOWS_AXIS = 3
 """Strokes of the reference performance that gives the axes."""

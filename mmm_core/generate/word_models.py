@@ -25,7 +25,8 @@ from mmm_core.language.plain_gestures import Meant, gesture_of
 from mmm_core.language.tagged_words import MarkedCommands, words_of
 from mmm_core.language.word_tables import REMEMBERED
 from mmm_core.model.gesture_classifier import GestureClassifier, meant_by, meant_by_parts, meant_by_states
-from mmm_core.model.sentence_parser import SentenceParser, likeliest, log_likelihoods, memory_of
+from mmm_core.model.parsing import likeliest, log_likelihoods, memory_of, number_probabilities
+from mmm_core.model.sentence_parser import SentenceParser
 from mmm_core.model.sentence_tagger import SentenceTagger, WordStates, log_probability, pieces_of, word_states
 from mmm_core.model.text import MiniLm
 
@@ -143,12 +144,12 @@ class Parse:
     """
 
     def __init__(self, parser: SentenceParser, sentence: Encoded) -> None:
-        self._parser, self._is_image = parser, sentence.is_image
-        self._remembered = memory_of(parser, sentence.words.states)
+        self._parser, self._is_image, self._first_pieces = parser, sentence.is_image, sentence.words.first_pieces
+        self._memory = memory_of(parser, sentence.words.states)
 
     def likeliest(self, n: int) -> list[GestureSteps]:
         """The likeliest answers, n at most, the likeliest first."""
-        found = [steps_of(one.ids) for one in likeliest(self._parser, self._remembered, n)]
+        found = [steps_of(one.ids) for one in likeliest(self._parser, self._memory, n)]
         return [self._seen(steps) for steps in found if steps is not None]
 
     def log_likelihoods(self, answers: Sequence[GestureSteps]) -> list[float]:
@@ -158,11 +159,19 @@ class Parse:
         """
         orders = [[token_ids(one) for one in in_every_order(self._seen(answer))] for answer in answers]
         fitting = [ids for some in orders for ids in some if len(ids) <= self._parser.config.longest]
-        logs = iter(log_likelihoods(self._parser, self._remembered, fitting) if fitting else ())
+        logs = iter(log_likelihoods(self._parser, self._memory, fitting) if fitting else ())
         return [
             max((next(logs) for ids in some if len(ids) <= self._parser.config.longest), default=-math.inf)
             for some in orders
         ]
+
+    def number_probabilities(self, places: Sequence[int], answer: GestureSteps) -> NDArray[np.float32]:
+        """(N, K) probabilities that the words at N places say how often each of the K gestures of an answer is to be done."""
+        ids = token_ids(self._seen(answer))
+        if len(ids) > self._parser.config.longest:
+            return np.zeros((len(places), sum(map(len, answer))), np.float32)
+        pieces = self._first_pieces[list(places)].tolist()
+        return number_probabilities(self._parser, self._memory, pieces, ids).numpy()
 
     def _seen(self, steps: GestureSteps) -> GestureSteps:
         return mirrored(steps) if self._is_image else steps

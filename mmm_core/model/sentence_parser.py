@@ -1,7 +1,8 @@
 """Translates a sentence into the gestures that it asks for, step by step, each with its arm (`mmm_core.language.gesture_steps`).
 
 The lower layers are the text encoder's own; the parser adds copies of its next layers, trained further, and a small causal
-decoder that attends to their states (arXiv 1706.03762). It both proposes what a sentence asks for and says how likely a reading is.
+decoder that attends to their states (arXiv 1706.03762). It both proposes what a sentence asks for and says how likely a reading is,
+and tells which number of the sentence is how often a gesture is to be done.
 """
 
 from __future__ import annotations
@@ -14,7 +15,12 @@ import torch
 import torch.nn.functional as F
 from torch import Tensor, nn
 
+from mmm_core.model.number_pointer import NumberPointer
 from mmm_core.model.text import MiniLmConfig, WordLayer
+
+START_ID, END_ID = 0, 1
+TOKENS_OF_GESTURE = 3
+"""Tokens of each gesture of a sequence; the last of them is the gesture itself (`mmm_core.language.gesture_steps`)."""
 
 
 @dataclass(frozen=True)
@@ -102,6 +108,18 @@ def _joined(heads: Tensor) -> Tensor:
     return heads.transpose(1, 2).flatten(2)
 
 
+class Memory(NamedTuple):
+    """What a parser knows of B sentences.
+
+    Attributes:
+        words: (B, W, D) states of word pieces after its own layers.
+        pairs: keys and values (2, B, heads, W, D) to which each layer of the decoder attends.
+    """
+
+    words: Tensor
+    pairs: tuple[Tensor, ...]
+
+
 class SentenceParser(nn.Module):
     """Parser of sentences above the lower layers of a text encoder, which is no part of its weights."""
 
@@ -114,9 +132,10 @@ class SentenceParser(nn.Module):
         self.position = nn.Parameter(torch.randn(config.longest, config.width) * 0.02)
         self.decoder = nn.ModuleList(DecoderLayer(config) for _ in range(config.n_layers))
         self.norm, self.out = nn.LayerNorm(config.width), nn.Linear(config.width, len(config.tokens))
+        self.numbers = NumberPointer(text.width, config.width)
 
-    def remember(self, states: Tensor, mask: Tensor, dropout: float = 0.0) -> list[Tensor]:
-        """Keys and values (2, B, heads, W, D) to which each layer of the decoder attends.
+    def remember(self, states: Tensor, mask: Tensor, dropout: float = 0.0) -> Memory:
+        """What is to be known of sentences before their tokens.
 
         Args:
             states: (B, W, D) states of word pieces after the encoder's shared layers.
@@ -127,98 +146,38 @@ class SentenceParser(nn.Module):
         for layer in self.layers:
             x = F.dropout(layer(x, mask[:, None, None, :]), dropout, self.training)
         memory = self.memory(x)
-        return [cast("DecoderLayer", layer).remember(memory) for layer in self.decoder]
+        return Memory(x, tuple(cast("DecoderLayer", layer).remember(memory) for layer in self.decoder))
 
-    def forward(self, remembered: Sequence[Tensor], mask: Tensor, ids: Tensor, dropout: float = 0.0) -> Tensor:
-        """Scores (B, T, tokens) of the token after each of (B, T) tokens.
+    def forward(self, memory: Memory, mask: Tensor, ids: Tensor, dropout: float = 0.0) -> Tensor:
+        """Scores (B, T, tokens) of the token after each of (B, T) tokens; arguments of `decoded`."""
+        return self.out(self.decoded(memory, mask, ids, dropout))
+
+    def decoded(self, memory: Memory, mask: Tensor, ids: Tensor, dropout: float = 0.0) -> Tensor:
+        """States (B, T, width) of the decoder at each of (B, T) tokens.
 
         Args:
-            remembered: from `remember`.
+            memory: from `remember`.
             mask: (B, W) bool, true where there is a word piece.
             ids: (B, T) tokens, the first of which is START.
             dropout: share of the values that training drops in each layer.
         """
         x = self.token(ids) + self.position[: ids.shape[1]]
-        for layer, pairs in zip(self.decoder, remembered, strict=True):
+        for layer, pairs in zip(self.decoder, memory.pairs, strict=True):
             x = layer(x, pairs, mask[:, None, None, :], dropout)
-        return self.out(self.norm(x))
+        return self.norm(x)
 
     def next_scores(
-        self, remembered: Sequence[Tensor], last_ids: Tensor, n_before: int, caches: Sequence[KeyValueCache]
+        self, pairs: Sequence[Tensor], last_ids: Tensor, n_before: int, caches: Sequence[KeyValueCache]
     ) -> Tensor:
         """Scores (B, tokens) of the token after the last of B sequences, whose earlier tokens are in the caches.
 
         Args:
-            remembered: from `remember`, without padding.
+            pairs: of `Memory`, without padding.
             last_ids: (B,) the last token of each.
             n_before: number of the tokens before it.
             caches: one for each layer; the last token is added to them.
         """
         x = (self.token(last_ids) + self.position[n_before])[:, None]
-        for layer, pairs, cache in zip(self.decoder, remembered, caches, strict=True):
-            x = layer(x, pairs, None, cache=cache)
+        for layer, of_layer, cache in zip(self.decoder, pairs, caches, strict=True):
+            x = layer(x, of_layer, None, cache=cache)
         return self.out(self.norm(x[:, 0]))
-
-
-START_ID, END_ID = 0, 1
-
-
-class Parsed(NamedTuple):
-    """A sequence of tokens without START and END, and the logarithm of its probability."""
-
-    ids: tuple[int, ...]
-    log_probability: float
-
-
-@torch.inference_mode()
-def memory_of(parser: SentenceParser, states: Tensor) -> list[Tensor]:
-    """`SentenceParser.remember` of one sentence, given its states (W, D)."""
-    return parser.remember(states[None], torch.ones(1, len(states), dtype=torch.bool))
-
-
-@torch.inference_mode()
-def log_likelihoods(
-    parser: SentenceParser, remembered: Sequence[Tensor], sequences: Sequence[Sequence[int]]
-) -> list[float]:
-    """The logarithms of the probabilities of sequences, each with START and END, given one sentence."""
-    width = max(map(len, sequences))
-    ids = torch.tensor([[*s, *[END_ID] * (width - len(s))] for s in sequences])
-    log_p = _next_log_p(parser, remembered, ids[:, :-1])
-    of_tokens = log_p.gather(2, ids[:, 1:, None]).squeeze(2)
-    counts = torch.tensor([[i < len(s) - 1 for i in range(width - 1)] for s in sequences])
-    return (of_tokens * counts).sum(1).tolist()
-
-
-@torch.inference_mode()
-def likeliest(parser: SentenceParser, remembered: Sequence[Tensor], n: int) -> list[Parsed]:
-    """About the n likeliest sequences for one sentence, by beam search, the likeliest first."""
-    beams, done = [Parsed((START_ID,), 0.0)], list[Parsed]()
-    caches = [KeyValueCache() for _ in parser.decoder]
-    for n_before in range(parser.config.longest - 1):
-        pairs = [one.expand(-1, len(beams), -1, -1, -1) for one in remembered]
-        scores = parser.next_scores(pairs, torch.tensor([one.ids[-1] for one in beams]), n_before, caches)
-        log_p = F.log_softmax(scores.float(), -1) + torch.tensor([[one.log_probability] for one in beams])
-        best = log_p.flatten().topk(min(2 * n, log_p.numel()))
-        grown: list[tuple[int, Parsed]] = []
-        for log_probability, at in zip(best.values.tolist(), best.indices.tolist(), strict=True):
-            beam, token = divmod(at, log_p.shape[1])
-            ids = beams[beam].ids
-            if token == END_ID:
-                done.append(Parsed(ids[1:], log_probability))
-            else:
-                grown.append((beam, Parsed((*ids, token), log_probability)))
-        beams = [one for _, one in grown[:n]]
-        done.sort(key=lambda one: -one.log_probability)
-        if len(done) >= n and done[n - 1].log_probability >= beams[0].log_probability:
-            break
-        for cache in caches:
-            cache.keep(torch.tensor([beam for beam, _ in grown[:n]]))
-    return done[:n]
-
-
-def _next_log_p(parser: SentenceParser, remembered: Sequence[Tensor], ids: Tensor) -> Tensor:
-    """(N, T, tokens) log-probabilities of the token after each of (N, T) tokens, given one sentence."""
-    n, n_pieces = len(ids), remembered[0].shape[3]
-    mask = torch.ones(n, n_pieces, dtype=torch.bool)
-    scores = parser([pairs.expand(-1, n, -1, -1, -1) for pairs in remembered], mask, ids)
-    return F.log_softmax(scores.float(), -1)

@@ -31,6 +31,7 @@ SETS = (
     "words_dev",
     "words_dev_2",
     "words_dev_3",
+    "words_dev_4",
     "words_test_1",
     "words_test_2",
     "words_test_3",

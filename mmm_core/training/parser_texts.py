@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import random
 import re
+from itertools import chain
 from typing import NamedTuple
 
 from mmm_core.corpus.denials import MEANT, NOTHING, denial_patterns, draw_denial
 from mmm_core.corpus.labelled_sentences import LabelledSentence, load_labelled_sentences
 from mmm_core.corpus.marked_sentences import TaggedSentence, joined, load_marked_sentences
+from mmm_core.language.count_words import count_asked
 from mmm_core.language.gesture_steps import NO_GESTURE, ArmGesture, arm_of, is_all_gestures
 from mmm_core.language.inflection import gerund
 from mmm_core.language.limbs import is_gesture_verb
@@ -92,7 +94,8 @@ class ParserTexts:
         drawn = self._texts.gesture()
         name = drawn.name
         assert name, "a phrase of a gesture names it"
-        return LabelledSentence(drawn.text, ((ArmGesture(arm_of(drawn.text, name), name),),))
+        steps = ((ArmGesture(arm_of(drawn.text, name), name),),)
+        return LabelledSentence(drawn.text, steps, counts=(count_asked(drawn.text),))
 
     def _joined(self) -> LabelledSentence:
         """Two to four gestures, one after another, between marks."""
@@ -102,7 +105,8 @@ class ParserTexts:
         marks = (rng.choice(_MARKS),) if rng.random() < _SHARE_ONE_MARK else _MARKS
         for part in parts[1:]:
             said += rng.choice(marks) + part.text.rstrip(".!?")
-        return self._spoilt(LabelledSentence(said, tuple(one.steps[0] for one in parts)))
+        counts = tuple(chain.from_iterable(one.counts or () for one in parts))
+        return self._spoilt(LabelledSentence(said, tuple(one.steps[0] for one in parts), counts=counts))
 
     def _part(self) -> LabelledSentence:
         """A gesture among several: a phrase, or a writer's short sentence for one gesture."""

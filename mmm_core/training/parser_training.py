@@ -1,4 +1,4 @@
-"""Trains the sentence parser on sentences with known gestures, in their order and with their arms."""
+"""Trains the sentence parser on sentences with known gestures, in their order, with their arms and numbers."""
 
 from __future__ import annotations
 
@@ -22,15 +22,16 @@ from mmm_core.language.mirroring import canonical
 from mmm_core.model.sentence_parser import END_ID, ParserConfig, SentenceParser
 from mmm_core.model.text import MiniLm
 from mmm_core.training.drawn_text import TOGETHER, batches_of
+from mmm_core.training.number_pairs import number_pairs
 from mmm_core.training.own_layers import copy_layers
 from mmm_core.training.parser_texts import ParserTexts, Shares
 from mmm_core.training.run import Run, Schedule, train
 
 STEPS, BATCH = 7000, 64
 """Optimisation steps, and sentences of a batch."""
-FURTHER_STEPS, FURTHER_RATE = 1200, 0.3
+FURTHER_STEPS, FURTHER_RATE = 2800, 0.4
 """Steps of a parser that learns further, and the factor of its learning rates."""
-FURTHER_SHARES = Shares(labelled=0.55, refilled=0.05, denial=0.03, joined=0.22, outside=0.04)
+FURTHER_SHARES = Shares(labelled=0.62, refilled=0.05, denial=0.03, joined=0.16, outside=0.04)
 RATE, RATE_OF_COPIED = 8e-4, 2e-4
 """Highest learning rates: of new layers, and of the copies of the encoder's layers."""
 DROPOUT, SMOOTHING = 0.1, 0.03
@@ -91,7 +92,9 @@ def train_parser(
 
 def _data_key(steps: int, shares: Shares, start: Path | None) -> str:
     """Tells apart runs of other sentences, shares, gestures, steps or parsers to start from; the same in every process."""
-    sentences = [(one.text, one.steps) for one in load_labelled_sentences()]  # sets of manners have no fixed order
+    sentences = [
+        (one.text, one.steps, one.counts) for one in load_labelled_sentences()
+    ]  # sets of manners have no fixed order
     return hashlib.sha256(
         repr((steps, BATCH, shares, tokens(), sentences, start and file_hash(start))).encode()
     ).hexdigest()[:8]
@@ -104,7 +107,7 @@ def _batches(draw: Draw, rng: random.Random, first: int) -> list[list[LabelledSe
 
 
 def _loss(parser: SentenceParser, encoder: MiniLm, batch: Sequence[LabelledSentence]) -> Tensor:
-    """Cross entropy of the tokens of a batch, the sum of each sentence's."""
+    """Cross entropy of the tokens of a batch and of its numbers, the sum of each sentence's."""
     ids, mask = encoder.piece_ids([one.text for one in batch])
     with torch.no_grad():
         states = encoder.lower_states(ids, mask, parser.config.n_shared)
@@ -112,11 +115,19 @@ def _loss(parser: SentenceParser, encoder: MiniLm, batch: Sequence[LabelledSente
     width = max(map(len, sequences))
     given = torch.tensor([[*s, *[END_ID] * (width - len(s))] for s in sequences])
     wanted = torch.tensor([[*s[1:], *[_NOT_GIVEN] * (width - len(s))] for s in sequences])
-    scores = parser(parser.remember(states, mask, DROPOUT), mask, given[:, :-1], DROPOUT)
+    memory = parser.remember(states, mask, DROPOUT)
+    decoded = parser.decoded(memory, mask, given[:, :-1], DROPOUT)
+    scores = parser.out(decoded).float()
     of_tokens = F.cross_entropy(
-        scores.float().transpose(1, 2), wanted, ignore_index=_NOT_GIVEN, label_smoothing=SMOOTHING, reduction="sum"
+        scores.transpose(1, 2), wanted, ignore_index=_NOT_GIVEN, label_smoothing=SMOOTHING, reduction="sum"
     )
-    return of_tokens / len(batch)
+    pairs = [pair for pair in number_pairs(encoder, batch) if pair.token < decoded.shape[1]]
+    if not pairs:
+        return of_tokens / len(batch)
+    sentence, piece, token, is_meant = torch.tensor(pairs).unbind(1)
+    scores = parser.numbers(memory.words[sentence, piece], decoded[sentence, token], DROPOUT).float()
+    of_numbers = F.binary_cross_entropy_with_logits(scores, is_meant.float(), reduction="sum")
+    return (of_tokens + of_numbers) / len(batch)
 
 
 def _canonical(one: LabelledSentence) -> LabelledSentence:

@@ -35,6 +35,7 @@ def eval(
         "dev",
         "dev_2",
         "dev_3",
+        "dev_4",
         "seen",
         "test",
         "test_singles",

@@ -47,9 +47,7 @@ def test_strokes_are_as_many_as_the_text_names(engine: Engine, count: int) -> No
     assert found is not None and len(found.frames) == count
 
 
-@pytest.mark.parametrize(
-    "text", few_and_long(["salute {}"], ["take {} sips from your glass", "give me {} high fives"])
-)
+@pytest.mark.parametrize("text", few_and_long(["salute {}"], ["take {} sips from your glass", "give me {} high fives"]))
 def test_a_gesture_without_strokes_is_done_as_often_as_a_text_says(engine: Engine, text: str) -> None:
     numbers = ("two times", "four times") if text == "salute {}" else ("two", "four")
     two, four = (tokens(engine, text.format(number)) for number in numbers)

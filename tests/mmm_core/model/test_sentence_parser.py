@@ -3,19 +3,13 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import pytest
 import torch
 
-from mmm_core.model.sentence_parser import (
-    END_ID,
-    START_ID,
-    ParserConfig,
-    SentenceParser,
-    likeliest,
-    log_likelihoods,
-    memory_of,
-)
+from mmm_core.model.parsing import likeliest, log_likelihoods, memory_of, number_probabilities
+from mmm_core.model.sentence_parser import END_ID, START_ID, Memory, ParserConfig, SentenceParser
 from mmm_core.model.text import MiniLmConfig
 
 TEXT = MiniLmConfig(vocabulary=10, width=32, n_heads=2, mlp_width=64)
@@ -31,11 +25,11 @@ def parser() -> SentenceParser:
 
 
 @pytest.fixture(scope="module")
-def sentence(parser: SentenceParser) -> list[torch.Tensor]:
+def sentence(parser: SentenceParser) -> Memory:
     return memory_of(parser, torch.randn(7, TEXT.width))
 
 
-def test_the_probabilities_of_all_answers_add_up_to_one(parser: SentenceParser, sentence: list[torch.Tensor]) -> None:
+def test_the_probabilities_of_all_answers_add_up_to_one(parser: SentenceParser, sentence: Memory) -> None:
     answers = [(START_ID, *middle, END_ID) for n in range(3) for middle in _sequences(n)]
     longer = [(START_ID, *middle) for middle in _sequences(3)]
     total = sum(
@@ -54,7 +48,7 @@ def _sequences(n: int) -> list[tuple[int, ...]]:
 
 
 def test_the_search_finds_the_likeliest_answers_with_their_probabilities(
-    parser: SentenceParser, sentence: list[torch.Tensor]
+    parser: SentenceParser, sentence: Memory
 ) -> None:
     every = [middle for n in range(5) for middle in _sequences(n)]
     logs = log_likelihoods(parser, sentence, [(START_ID, *middle, END_ID) for middle in every])
@@ -64,9 +58,7 @@ def test_the_search_finds_the_likeliest_answers_with_their_probabilities(
     assert [one.log_probability for one in found[:3]] == pytest.approx([log for log, _ in best], abs=1e-4)
 
 
-def test_a_narrow_search_gives_answers_with_their_own_probabilities(
-    parser: SentenceParser, sentence: list[torch.Tensor]
-) -> None:
+def test_a_narrow_search_gives_answers_with_their_own_probabilities(parser: SentenceParser, sentence: Memory) -> None:
     found = likeliest(parser, sentence, 2)
     assert 1 <= len(found) <= 2
     logs = log_likelihoods(parser, sentence, [(START_ID, *one.ids, END_ID) for one in found])
@@ -83,3 +75,14 @@ def test_other_lengths_beside_an_answer_and_padding_change_nothing(parser: Sente
     assert torch.allclose(parser(parser.remember(padded, wider), wider, ids), plain, atol=1e-5)
     longer = torch.tensor([[START_ID, 2, 3, 4]])
     assert torch.allclose(parser(parser.remember(states, mask), mask, longer)[:, :3], plain, atol=1e-5)
+
+
+def test_numbers_are_judged_for_each_gesture_by_itself(parser: SentenceParser) -> None:
+    """The pointer scores a pair by the number's word and by the tokens up to the gesture, whatever comes after it."""
+    ids = (START_ID, 2, 3, 4, 4, 3, 2)
+    parser = SentenceParser(replace(CONFIG, longest=8), TEXT).eval().requires_grad_(False)
+    memory = memory_of(parser, torch.randn(7, TEXT.width))
+    one, both = (number_probabilities(parser, memory, (2, 5), (*ids[:end], END_ID)) for end in (4, 7))
+    assert one.shape == (2, 1) and both.shape == (2, 2)
+    assert torch.allclose(one, both[:, :1], atol=1e-6)
+    assert len(set(both.flatten().tolist())) == 4 and ((both > 0) & (both < 1)).all()

@@ -19,10 +19,10 @@ from mmm_core.corpus.marked_sentences import TaggedSentence, read_commands
 from mmm_core.errors import CheckpointError
 from mmm_core.inference.checkpoint import load_text_encoder, save_tensors
 from mmm_core.inference.own_layers_file import load_parser, save_parser
-from mmm_core.language.gesture_steps import plainly, steps_of
+from mmm_core.language.gesture_steps import plainly, steps_of, token_ids
 from mmm_core.language.plain_gestures import OUTSIDE, gestures
 from mmm_core.language.tagged_words import words_of
-from mmm_core.model.sentence_parser import likeliest, memory_of
+from mmm_core.model.parsing import likeliest, memory_of, number_probabilities
 from mmm_core.model.sentence_tagger import word_states
 from mmm_core.training import parser_training
 from mmm_core.training.parser_texts import ParserTexts
@@ -35,6 +35,7 @@ GIVEN = [
         "look up after you bow => bow; look/up",
         "do not clap => | not clap",
         "right hand on your heart while you nod => right heart + nod",
+        "clap twice before the three of you bow => clap x2; bow",
     )
 ]
 
@@ -51,7 +52,11 @@ def test_it_learns_the_sentences_it_is_given_and_is_read_back(tmp_path: Path, mo
     for parser in (trained, load_parser(path)):
         for one in GIVEN:
             (states,) = word_states(encoder, parser.config.n_shared, [one.text.split()])
-            assert steps_of(likeliest(parser, memory_of(parser, states.states), 2)[0].ids) == one.steps
+            memory = memory_of(parser, states.states)
+            assert steps_of(likeliest(parser, memory, 2)[0].ids) == one.steps
+        pieces = states.first_pieces[[1, 4]].tolist()  # of the last sentence: "twice" and "three"
+        ((of_clap, of_bow), of_people) = number_probabilities(parser, memory, pieces, token_ids(one.steps)).tolist()
+        assert of_clap > 0.5 > max(of_bow, *of_people)
     assert all(not p.requires_grad for p in trained.parameters())
 
 
@@ -130,7 +135,7 @@ def test_gestures_put_into_a_marked_sentence_are_its_steps(monkeypatch: pytest.M
     for share in ("_SHARE_WITHOUT_MARKS", "_SHARE_LOWER", "_SHARE_WITH_SLIPS", "_SHARE_OF_CORPUS"):
         monkeypatch.setattr(f"mmm_core.training.parser_texts.{share}", 0.0)
     texts = ParserTexts(random.Random(2))
-    for text, ((first,), (second,)), _ in (texts.refilled() for _ in range(50)):
+    for text, ((first,), (second,)), *_ in (texts.refilled() for _ in range(50)):
         said = [plainly(one) for one in (second, first)]
         assert text == "before you {}, {}".format(*said)
 

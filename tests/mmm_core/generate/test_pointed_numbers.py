@@ -1,0 +1,64 @@
+"""Numbers of strokes that stand anywhere in a sentence, and numbers that count something else, read with the shipped parser."""
+
+from __future__ import annotations
+
+import pytest
+
+from mmm_core.generate.sentence_reader import SentenceReader
+from mmm_core.language.count_words import count_asked
+
+
+@pytest.fixture(scope="module")
+def reader() -> SentenceReader:
+    return SentenceReader.load()
+
+
+def _counts(reader: SentenceReader, sentence: str) -> list[int | None]:
+    return [count_asked(command.text) for step in reader.read(sentence).steps for command in step]
+
+
+@pytest.mark.parametrize(
+    ("sentence", "counts"),
+    [
+        ("cherries, left hand, five of them", [5]),
+        ("saw that log for me, a dozen strokes please", [12]),
+        ("do a quadruple fist pump", [4]),
+        ("triple nod", [3]),
+        ("shrug x3", [3]),
+        ("right uppercut times six", [6]),
+        ("karate chops with both hands taking turns, six in total", [6]),
+        ("sway to and fro for six sways", [6]),
+        ("head rolls, three, gently", [3]),
+        ("chop, chop, chop: that's three with the right", [3]),
+        ("please tip your cap twice", [2]),
+        ("knock with your right five times, oh go on, make it six", [6]),
+        ("don't do seven claps, do eight", [8]),
+        ("clap twice, no, three times", [3]),
+        ("clap and nod, three of each", [3, 3]),
+        ("two jabs with the left, three with the right, then a bow", [2, 3, None]),
+        ("brush your teeth, up and down ten times, and have a drink from the glass", [10, None]),
+    ],
+)
+def test_a_number_of_strokes_is_found_wherever_it_stands(
+    reader: SentenceReader, sentence: str, counts: list[int | None]
+) -> None:
+    assert _counts(reader, sentence) == counts
+
+
+@pytest.mark.parametrize(
+    "sentence",
+    [
+        "give me five",
+        "wave to camera two",
+        "raise your left hand, class 3",
+        "hold the binoculars up for six seconds",
+        "at 5 o'clock, nod",
+        "nod to the two of you",
+        "conduct as if there were five hundred singers",
+        "I'm not saying it twice: arms down",
+        "look up once in a while",
+        "one arm up",
+    ],
+)
+def test_a_number_of_something_else_is_none_of_strokes(reader: SentenceReader, sentence: str) -> None:
+    assert not any(_counts(reader, sentence))
