@@ -194,9 +194,10 @@ class MotionModel:
 
 
 def nothing_to_do(reading: Reading) -> ScopeVerdict:
-    """The verdict on a text that only says what not to do."""
+    """The verdict on a text that asks for nothing, or only says what not to do."""
     denied = "', '".join(reading.denied)
-    return ScopeVerdict("rejected", 0.0, "", f"nothing is to be done: it only says not to do '{denied}'")
+    why = f"it only says not to do '{denied}'" if denied else "it asks for no movement; to move, say what to do: 'nod'"
+    return ScopeVerdict("rejected", 0.0, "", f"nothing is to be done: {why}")
 
 
 def check_seed(seed: int) -> None:

@@ -13,6 +13,7 @@ from itertools import chain, takewhile
 
 import numpy as np
 
+from mmm_core.generate.pointed_numbers import with_pointed_numbers
 from mmm_core.generate.word_models import Encoded, Parse, WordModels
 from mmm_core.inference.onednn_linear import Packing
 from mmm_core.language.asides import without_asides
@@ -40,7 +41,6 @@ from mmm_core.language.reading import read
 from mmm_core.language.said_arm import with_said_arm
 from mmm_core.language.said_at_once import said_at_once, without_repeats
 from mmm_core.language.spelling import mended
-from mmm_core.language.stroke_numbers import with_said_number
 from mmm_core.language.sure_reading import is_sure, needs_networks, needs_tags, unknown_commands
 from mmm_core.language.tagged_manner import manner_phrases, with_left_manner, with_likely_manner, with_plain_manner
 from mmm_core.language.tagged_reading import can_be_read, reading_of, without_splits
@@ -52,6 +52,8 @@ _DIVISIONS = 8
 """Sequences of tags that are looked at, at most."""
 _PROPOSALS = 4
 """Answers of the parser that are looked at, at most."""
+_LOG_NOTHING = math.log(0.8)
+"""Least log-probability that a sentence without negative words asks for nothing, as "my cat waved at me" does, to be read so."""
 _FIRST_SENTENCE = "nod, and once you have done that, wave to the people who are waiting"
 """A sentence for the networks, read when they are loaded: the first one takes several times as long as the others."""
 
@@ -83,8 +85,8 @@ class SentenceReader:
 
     def read(self, text: str) -> Reading:
         """The commands of a text."""
-        found = without_hard_phrases(text, with_said_number(with_said_arm(self._read(text))))
-        return with_plain_repetitions(found, self._models.classes)
+        found = with_pointed_numbers(with_said_arm(self._read(text)), self._models)
+        return with_plain_repetitions(without_hard_phrases(text, found), self._models.classes)
 
     def _read(self, text: str) -> Reading:
         by_rules = read(text)
@@ -163,7 +165,10 @@ class SentenceReader:
         parse = self._models.parse(states)
         found = [*candidates, *self._proposed(candidates, text, states.meant, parse)]
         meant = self._models.classes(commands_of(found))
-        *logs, outside = parse.log_likelihoods([*(steps_asked(one.reading, meant) for one in found), NO_GESTURE])
+        answers = [steps_asked(one.reading, meant) for one in found]
+        *logs, outside, nothing = parse.log_likelihoods([*answers, NO_GESTURE, ()])
+        if nothing >= _LOG_NOTHING and not may_deny(text):
+            return [Candidate(Reading(text, ()), by_parser=True, log_parsed=nothing)], math.exp(outside)
         return merged(replace(one, log_parsed=log) for one, log in zip(found, logs, strict=True)), math.exp(outside)
 
     def _proposed(self, candidates: Sequence[Candidate], text: str, whole: Meant, parse: Parse) -> list[Candidate]:

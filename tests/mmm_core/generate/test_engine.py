@@ -27,7 +27,7 @@ def test_the_same_text_seed_and_length_give_the_same_motion(engine: Engine) -> N
 
 
 def test_another_seed_gives_another_motion_where_the_model_is_not_sure(engine: Engine) -> None:
-    texts = ("dance", "be happy", "greet the visitors", "celebrate", "show me something", "move your arms like the sea")
+    texts = ("dance", "celebrate", "show me something", "move a little", "fan yourself")
     pairs = [[engine.generate(text, seed=s).motion.tokens for s in (4, 5)] for text in texts]
     assert not all(np.array_equal(a, b) for a, b in pairs)
 

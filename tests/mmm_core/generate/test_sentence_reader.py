@@ -118,6 +118,20 @@ def test_what_the_rules_deny_stays_denied(reader: SentenceReader, every: int) ->
     assert [one for one in done if one[1]] == []
 
 
+@pytest.mark.parametrize(
+    "sentence", ["my old boss used to nod at everything I said", "My wife once did the superhero pose on a cliff."]
+)
+def test_a_report_asks_for_nothing(reader: SentenceReader, sentence: str) -> None:
+    assert reader.read(sentence).steps == ()
+
+
+@pytest.mark.parametrize(
+    "sentence", ["people bow here, so bow", "it would be lovely if you nodded", "the robot nods twice, then bows"]
+)
+def test_a_request_that_looks_like_a_report_is_one(reader: SentenceReader, sentence: str) -> None:
+    assert reader.read(sentence).steps
+
+
 class _Answers:
     """A parser that asks for a clap and a wave whatever is said."""
 

@@ -35,6 +35,12 @@ def test_each_command_has_its_own_number() -> None:
     assert [step[0].text for step in read.steps] == ["clap 3 times", "nod your head", "bow politely once"]
 
 
+def test_other_words_are_given_a_number_in_their_plain_command() -> None:
+    reading = Reading("", ((PlainCommand("do a quadruple fist pump"),),))
+    read = with_numbers(reading, [4], {"do a quadruple fist pump": "pump your fist in triumph"})
+    assert read.steps[0][0].text == "pump your fist in triumph 4 times"
+
+
 @pytest.mark.parametrize("number", [3, None])
 def test_a_command_that_is_no_phrase_stays(number: int | None) -> None:
     reading = Reading("", ((PlainCommand("put your hand on that opposite thing"),),))

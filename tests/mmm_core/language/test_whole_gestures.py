@@ -48,6 +48,7 @@ def _read(command: str, gesture: str, probability: float) -> tuple[list[str], li
         ("salute the captain three times", "salute", "salute 3 times"),
         ("take two sips with your left hand", "drink", "drink from a glass with your left hand 2 times"),
         ("pour the tea twice", "pour", "pour water from a jug 2 times"),
+        ("do the dab three times", "dab", "dab 3 times"),
         ("tip your hat twice", "pull_hat", "tip your hat twice"),
     ],
 )
