@@ -46,7 +46,8 @@ def showable(
 
 def performances(probe: Probe, on_robot: OnRobot) -> Iterator[PostureFeatures]:
     """The corpus's own performances of a probe, as a robot shows them; a gesture without strokes as often as it is to be done."""
-    times = (probe.count or 1) if not FAMILIES[probe.family].counts else 1
+    is_whole = not FAMILIES[probe.family].counts and probe.then is None
+    times = (probe.count or 1) if is_whole else 1
     for seed in range(PERFORMANCES):
         motion = on_robot(as_motion(np.tile(performed(probe, seed), (times, 1)), probe.text))
         yield posture_features(motion.joints_m, motion.head_quat_wxyz, motion.forearm_twist_rad)

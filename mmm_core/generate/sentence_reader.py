@@ -18,7 +18,7 @@ from mmm_core.generate.word_models import Encoded, Parse, WordModels
 from mmm_core.inference.onednn_linear import Packing
 from mmm_core.language.asides import without_asides
 from mmm_core.language.candidates import Candidate, Ways, chosen, commands_of, in_sentence, is_task, merged
-from mmm_core.language.commands import Reading
+from mmm_core.language.commands import EXACTLY, Reading
 from mmm_core.language.denial import surely_denies
 from mmm_core.language.gesture_steps import NO_GESTURE, is_all_gestures
 from mmm_core.language.hard_phrases import without_hard_phrases
@@ -85,8 +85,11 @@ class SentenceReader:
 
     def read(self, text: str) -> Reading:
         """The commands of a text."""
-        found = with_pointed_numbers(with_said_arm(self._read(text)), self._models)
-        return with_plain_repetitions(without_hard_phrases(text, found), self._models.classes)
+        found = with_said_arm(self._read(text))
+        if text.startswith(EXACTLY):
+            return found
+        found = without_hard_phrases(text, with_pointed_numbers(found, self._models))
+        return with_plain_repetitions(found, self._models.classes)
 
     def _read(self, text: str) -> Reading:
         by_rules = read(text)

@@ -165,11 +165,14 @@ class Parse:
             for some in orders
         ]
 
-    def number_probabilities(self, places: Sequence[int], answer: GestureSteps) -> NDArray[np.float32]:
-        """(N, K) probabilities that the words at N places say how often each of the K gestures of an answer is to be done."""
+    def number_probabilities(self, places: Sequence[int], answer: GestureSteps) -> NDArray[np.float32] | None:
+        """(N, K) probabilities that the words at N places say how often each of the K gestures of an answer is to be done.
+
+        None for an answer that is longer than any that the parser has learnt from.
+        """
         ids = token_ids(self._seen(answer))
         if len(ids) > self._parser.config.longest:
-            return np.zeros((len(places), sum(map(len, answer))), np.float32)
+            return None
         pieces = self._first_pieces[list(places)].tolist()
         return number_probabilities(self._parser, self._memory, pieces, ids).numpy()
 

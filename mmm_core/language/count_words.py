@@ -24,7 +24,7 @@ _NOT_STROKES = (
     "s|secs?|seconds?|minutes?|degrees?|met(?:er|re)s?|cm|inch(?:es)?|people|persons?|things?|others?|us|of|or|to|and|"
     "balls|oranges|plates|pins|hours?|days?|weeks?|months?|years?|beats?|heartbeats?|counts?|bars?|measures?"
 )
-_OF_A_LIMB = (
+OF_A_LIMB = (
     "bumps|pumps|circles|shakes|rolls|curls|claps|knocks|pats|taps|punches|waves|turns|raises|lifts|tilts|nods|swings|shrugs|"
     "strokes|chops|wobbles"
 )
@@ -44,10 +44,14 @@ _SINGLE = re.compile(
     re.IGNORECASE,
 )
 _TIMES = re.compile(rf"\b{_NUMBER}\s*(?:times|x)\b", re.IGNORECASE)
+_LAST_TIMES = re.compile(
+    rf" (?:once|twice|thrice|one time|a single time|[\w-]+ (?:times|x)|(?:{'|'.join(NUMBERS)})(?: of (?:each|them|those))?)$",
+    re.IGNORECASE,
+)
 _THINGS = re.compile(
     r"(?<!\bfor )(?<!\bin )(?<!\bone )(?<!\bhigh )(?<!the )(?<!those )(?<!these )(?<!your )(?<!my )(?<!all )(?<!at )"
     r"(?<!to )(?<!of )(?<!(?<!would )like )(?<!\bon )(?<!\bhad )(?<!\bhas )(?<!\bhave )(?<!\bthan )(?<!\bfrom )(?<!\bbetween )"
-    rf"\b{_NUMBER}\s+(?:(?!(?:{_NOT_STROKES})\b(?! (?:{_OF_A_LIMB})\b)|(?:{_BETWEEN})\b)[a-z-]+\s+){{0,2}}"
+    rf"\b{_NUMBER}\s+(?:(?!(?:{_NOT_STROKES})\b(?! (?:{OF_A_LIMB})\b)|(?:{_BETWEEN})\b)[a-z-]+\s+){{0,2}}"
     rf"(?!(?:{_NOT_STROKES})\b)(?:high five|[a-z-]+s)\b",
     re.IGNORECASE,
 )
@@ -63,6 +67,24 @@ def count_asked(text: str) -> int | None:
         n for m in _THINGS.finditer(text) if (n := NUMBERS[m[1].lower()]) > 1 and not _TIMES.match(text, m.start())
     }
     return found.pop() if len(found) == 1 else None
+
+
+def with_times(text: str, count: int) -> str:
+    """A text that names no number, with a number of times at its end, as plain commands have it.
+
+    >>> with_times("nod your head", 3)
+    'nod your head 3 times'
+    """
+    return f"{text} {count} times" if count > 1 else f"{text} once"
+
+
+def without_times(text: str) -> str:
+    """A text without the number of times at its end.
+
+    >>> without_times("nod your head 3 times")
+    'nod your head'
+    """
+    return _LAST_TIMES.sub("", text)
 
 
 def with_count(text: str, count: int) -> str | None:

@@ -6,19 +6,18 @@ any, bow, end.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Sequence
 from functools import cache
 from itertools import islice, permutations, product
 from typing import NamedTuple
 
+from mmm_core.language.count_words import without_times
 from mmm_core.language.mirroring import mirror_words
 from mmm_core.language.plain_gestures import OUTSIDE, gestures, plain_command
 
 THEN, WITH, START, END = "then", "with", "start", "end"
 ANY_ARM, LEFT, RIGHT, BOTH, IN_TURN = ARMS = ("any", "left", "right", "both", "in turn")
 _SAID = {LEFT: "left hand", RIGHT: "right hand", BOTH: "both hands", IN_TURN: "alternating hands"}
-_COUNT = re.compile(r" (?:once|\d+ times)$")
 _OTHER_ARM = {LEFT: RIGHT, RIGHT: LEFT}
 
 
@@ -77,7 +76,7 @@ def arm_of(said: str, gesture: str) -> str:
     """The arm that words name for a gesture: one of `ARMS`; `ANY_ARM` also where the gesture leaves no choice."""
     if gesture == OUTSIDE:
         return ANY_ARM
-    return _arms(gesture).get(_COUNT.sub("", plain_command(gesture, said)), ANY_ARM)
+    return _arms(gesture).get(without_times(plain_command(gesture, said)), ANY_ARM)
 
 
 def with_own_arm(one: ArmGesture) -> ArmGesture:

@@ -6,29 +6,28 @@ import re
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from mmm_core.language.count_words import ADVERBS, NUMBERS
+from mmm_core.language.count_words import ADVERBS, NUMBERS, OF_A_LIMB
 from mmm_core.language.word_tables import LIMB
 
 _ABOVE = ("thirteen", "fourteen", "fifteen", "sixteen", "seventeen", "eighteen", "nineteen", "twenty")
+_TENS = {"twenty": 20, "thirty": 30, "forty": 40, "fifty": 50, "sixty": 60, "seventy": 70, "eighty": 80, "ninety": 90}
 _VALUES = (
     NUMBERS
     | ADVERBS
     | {word: i for i, word in enumerate(_ABOVE, 13)}
+    | _TENS
     | {"single": 1, "double": 2, "couple": 2, "pair": 2, "triple": 3, "trio": 3, "quadruple": 4, "dozen": 12}
 )
 _FIGURE = re.compile(r"x?(\d{1,2})x?")
 _LIMBS = re.compile(rf"(?:{LIMB}|sides?|eyes?|ears?|feet|foot|knees?|legs?|handed)")
 """Nouns after "one" and "two" that are used, not counted: "with one hand"."""
-_OF_A_LIMB = re.compile(
-    r"(?:bump|pump|circle|shake|roll|curl|clap|punch|wave|turn|raise|lift|swing|chop|wiggle|flip|twist)s?"
-)
-"""Strokes that are named after the limb: "two fist pumps"."""
+_OF_A_LIMB = frozenset(OF_A_LIMB.split("|"))
 _NAMED = re.compile(
-    r"(?:number|no|row|year|class|room|page|hole|level|day|bus|train|platform|table|aged?|ward|camera|finalist|aisle|bed|gate|"
-    r"player|channel|seat|floor|court|lane|track|group|team|route|line|chapter|exhibit|stall|booth|contestant)"
+    r"(?:number|year|class|room|page|hole|level|day|bus|train|platform|table|aged?|ward|camera|finalist|aisle|bed|gate|"
+    r"player|channel|seat|floor|court|lane|track|group|team|route|chapter|exhibit|stall|booth|contestant)"
 )
 """Nouns before a number that is their name: "table six"."""
-_LARGER = re.compile(r"(?:hundred|thousand|million|percent|o'clock|am|pm)")
+_LARGER = re.compile(r"hundred|thousand|million|percent|%|o['\u2019]clock|am|pm")
 
 
 class NumberWord(NamedTuple):
@@ -48,15 +47,24 @@ def number_words(words: Sequence[str]) -> list[NumberWord]:
     for place, word in enumerate(map(str.lower, words)):
         figure = _FIGURE.fullmatch(word)
         value = int(figure[1]) if figure else _VALUES.get(word)
-        if word == "dozen" and any(before.lower() == "half" for before in words[max(place - 2, 0) : place]):
+        if not value or _is_of_something_else(words, place):
+            continue
+        before = [one.lower() for one in words[max(place - 2, 0) : place]]
+        if word == "dozen" and "half" in before:
             value = 6
-        if value and not _is_of_something_else(words, place):
-            found.append(NumberWord(place, value))
+        elif found and found[-1].place == place - 1 and (word == "dozen" or (before[-1] in _TENS and value < 10)):
+            tens = found.pop().value  # "two dozen", "twenty five"
+            value = tens * value if word == "dozen" else tens + value
+        found.append(NumberWord(place, value))
     return found
 
 
 def _is_of_something_else(words: Sequence[str], place: int) -> bool:
     """Whether a number belongs to a name, a larger number, a time of day or the limbs that are used."""
     before, number, after, then = (words[i].lower() if 0 <= i < len(words) else "" for i in range(place - 1, place + 3))
-    names_limbs = number in ("one", "two", "1", "2") and _LIMBS.fullmatch(after) and not _OF_A_LIMB.fullmatch(then)
-    return bool(_NAMED.fullmatch(before) or _LARGER.fullmatch(after) or names_limbs)
+    names_strokes = not {then, f"{then}s", f"{then}es"}.isdisjoint(_OF_A_LIMB)
+    names_limbs = number in ("one", "two", "1", "2") and _LIMBS.fullmatch(after) and not names_strokes
+    is_time = (after == ":" and then.isdigit()) or (
+        before == ":" and number.isdigit() and place > 1 and words[place - 2].isdigit()
+    )
+    return bool(_NAMED.fullmatch(before) or _LARGER.fullmatch(after) or names_limbs or is_time)

@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 
 from mmm_core.language.commands import MOST_AT_ONCE, MOST_STEPS, PlainCommand, Reading
-from mmm_core.language.count_words import count_asked
+from mmm_core.language.count_words import count_asked, with_times
 from mmm_core.language.gesture_steps import LEFT, RIGHT, ArmGesture, GestureSteps, arm_of, plainly, with_own_arm
 from mmm_core.language.limbs import limbs_of
 from mmm_core.language.manner import manner_of
@@ -118,7 +118,7 @@ def _command(one: ArmGesture, n_before: int, said: Sequence[Sequence[tuple[Plain
     if alike is None:
         return PlainCommand(words, limbs=limbs_of(words))
     count = count_asked(alike.text)
-    words += f" {count} times" if count and count > 1 else " once" if count else ""
+    words = with_times(words, count) if count else words
     return replace(alike, text=words, limbs=limbs_of(words))
 
 

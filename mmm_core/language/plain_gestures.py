@@ -14,7 +14,7 @@ from types import MappingProxyType
 from typing import NamedTuple
 
 from mmm_core.language.commands import PlainCommand, Reading
-from mmm_core.language.count_words import count_asked
+from mmm_core.language.count_words import count_asked, with_times, without_times
 from mmm_core.language.known_phrases import is_known_phrase
 from mmm_core.language.limbs import ARMS, limbs_of
 from mmm_core.language.word_tables import pairs
@@ -43,8 +43,6 @@ IN_TURN = re.compile(
     r"\b(?:with alternating (?:hands|arms|fists)|alternat\w*|in turns?|by turns|one after the other)\b"
 )
 """Words for arms that take turns."""
-_COUNT = re.compile(r" (?:once|\d+ times)$")
-"""The number of strokes of a plain command."""
 
 
 SURE, SURE_OF_ALL = 0.75, 0.96
@@ -112,9 +110,7 @@ def plain_command(gesture: str, said: str) -> str:
     else:
         command = both_arms if limbs == ARMS and both_arms else any_arm
     count = count_asked(said)
-    if not command or not count:
-        return command
-    return f"{command} {count} times" if count > 1 else f"{command} once"
+    return with_times(command, count) if command and count else command
 
 
 def family_of(gesture: str) -> str:
@@ -124,7 +120,7 @@ def family_of(gesture: str) -> str:
 
 def gesture_of(command: str) -> str:
     """The gesture whose plain command this is, with whatever arm and number of strokes; empty for other words."""
-    return _by_command().get(_COUNT.sub("", command), "")
+    return _by_command().get(without_times(command), "")
 
 
 def in_plain_words(reading: Reading, whole: Meant, commands: Mapping[str, Meant]) -> Reading:

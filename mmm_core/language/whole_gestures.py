@@ -5,18 +5,15 @@ The corpus performs such a gesture once, so the model has not learnt to do it mo
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import cache
 
 from mmm_core.language.commands import PlainCommand, Reading
-from mmm_core.language.count_words import count_asked
+from mmm_core.language.count_words import count_asked, without_times
 from mmm_core.language.limbs import limbs_of
 from mmm_core.language.plain_gestures import SURE, Meant, family_of, gesture_of, gestures, plain_command
 from mmm_core.language.word_tables import lines
-
-_TIMES = re.compile(r" (?:once|\d+ times)$")
 
 
 def is_whole(gesture: str) -> bool:
@@ -26,7 +23,7 @@ def is_whole(gesture: str) -> bool:
 
 def once(command: str) -> str:
     """The plain command for a whole gesture without its number: "salute" of "salute 3 times"; empty for other commands."""
-    bare = _TIMES.sub("", command)
+    bare = without_times(command)
     return bare if bare != command and is_whole(gesture_of(bare)) else ""
 
 

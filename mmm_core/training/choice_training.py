@@ -24,6 +24,7 @@ from mmm_core.corpus.plain_commands import plain_phrases
 from mmm_core.generate.sentence_reader import SentenceReader
 from mmm_core.language.candidates import EVIDENCE, Ways, evidence
 from mmm_core.language.commands import PlainCommand, Reading
+from mmm_core.language.count_words import without_times
 from mmm_core.language.known_phrases import significant_words
 from mmm_core.language.plain_gestures import Meant, family_of, gestures, is_gesture, plain_command
 
@@ -43,7 +44,6 @@ SETTLING = 3e-3
 """Factor of the squared weights in the loss."""
 _LIKELY = 0.4
 """Probability from which words are judged to be a gesture that no phrase of the corpus is."""
-_COUNT = re.compile(r" (?:once|\d+ times)$")
 
 
 @dataclass(frozen=True)
@@ -144,7 +144,7 @@ def _agrees(said: PlainCommand, label: Command, meant: Meant, judges_arms: bool)
 
 def families_of(text: str, meant: Meant) -> frozenset[str]:
     """The families of the gestures that the words of a command are: by phrases of the corpus, else by what they likely mean."""
-    if known := _families().get(_key(_COUNT.sub("", text))):
+    if known := _families().get(_key(without_times(text))):
         return known
     is_likely = is_gesture(meant.name) and meant.probability >= _LIKELY
     return frozenset({family_of(meant.name)} if is_likely else ())

@@ -14,6 +14,7 @@ from mmm_core.language.count_words import count_asked
 from mmm_core.language.gesture_steps import NO_GESTURE, ArmGesture, arm_of, is_all_gestures
 from mmm_core.language.inflection import gerund
 from mmm_core.language.limbs import is_gesture_verb
+from mmm_core.language.number_words import number_words
 from mmm_core.language.plain_gestures import gestures, may_deny, plain_command
 from mmm_core.language.tagged_words import AGAIN, BEGINS, DENIED, FOR_ALL, INSIDE, marked_commands
 from mmm_core.training.gesture_texts import Texts
@@ -45,7 +46,7 @@ class Shares(NamedTuple):
         labelled: sentences of writers.
         refilled: marked sentences with other gestures in the place of theirs.
         denial: sentences with a negative word.
-        joined: two or three gestures, one after another.
+        joined: two to four gestures, one after another.
         outside: texts that are no gesture.
     """
 
@@ -95,7 +96,9 @@ class ParserTexts:
         name = drawn.name
         assert name, "a phrase of a gesture names it"
         steps = ((ArmGesture(arm_of(drawn.text, name), name),),)
-        return LabelledSentence(drawn.text, steps, counts=(count_asked(drawn.text),))
+        count = count_asked(drawn.text)
+        is_known = count is not None or not number_words(drawn.text.split())
+        return LabelledSentence(drawn.text, steps, counts=(count,) if is_known else None)
 
     def _joined(self) -> LabelledSentence:
         """Two to four gestures, one after another, between marks."""
@@ -105,7 +108,8 @@ class ParserTexts:
         marks = (rng.choice(_MARKS),) if rng.random() < _SHARE_ONE_MARK else _MARKS
         for part in parts[1:]:
             said += rng.choice(marks) + part.text.rstrip(".!?")
-        counts = tuple(chain.from_iterable(one.counts or () for one in parts))
+        known = [one.counts for one in parts if one.counts is not None]
+        counts = tuple(chain.from_iterable(known)) if len(known) == len(parts) else None
         return self._spoilt(LabelledSentence(said, tuple(one.steps[0] for one in parts), counts=counts))
 
     def _part(self) -> LabelledSentence:

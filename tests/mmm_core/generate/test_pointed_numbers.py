@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import pytest
 
+from mmm_core.generate.pointed_numbers import with_pointed_numbers
 from mmm_core.generate.sentence_reader import SentenceReader
+from mmm_core.language.commands import Reading
 from mmm_core.language.count_words import count_asked
 
 
@@ -21,6 +23,7 @@ def _counts(reader: SentenceReader, sentence: str) -> list[int | None]:
     ("sentence", "counts"),
     [
         ("cherries, left hand, five of them", [5]),
+        ("cherries, left hand, fvie of them \N{CHERRIES}", [5]),
         ("saw that log for me, a dozen strokes please", [12]),
         ("do a double fist pump", [2]),
         ("triple nod", [3]),
@@ -42,6 +45,22 @@ def test_a_number_of_strokes_is_found_wherever_it_stands(
     reader: SentenceReader, sentence: str, counts: list[int | None]
 ) -> None:
     assert _counts(reader, sentence) == counts
+
+
+def test_a_mirrored_sentence_has_the_same_numbers(reader: SentenceReader) -> None:
+    for sides in (("left", "right"), ("right", "left")):
+        assert _counts(reader, "two jabs with the {}, three with the {}, then a bow".format(*sides)) == [2, 3, None]
+
+
+def test_what_is_read_exactly_keeps_its_numbers(reader: SentenceReader) -> None:
+    assert _counts(reader, "exactly: nod 3 times; bow; clap; wave 2 times; salute 2 times") == [3, None, None, 2, 2]
+
+
+def test_more_gestures_than_the_parser_knows_keep_their_numbers(reader: SentenceReader) -> None:
+    sentence = "exactly: clap 2 times; nod; bow; clap 3 times; nod; bow; wave; shrug"
+    steps = reader.read(sentence).steps
+    many = Reading(f"clap twice, {'nod, ' * 8}with all three of us", (*steps, *steps))
+    assert with_pointed_numbers(many, reader._models) is many
 
 
 @pytest.mark.parametrize(
