@@ -28,7 +28,7 @@ def test_a_number_is_paired_with_the_gestures_that_it_counts(line: str, meant: s
     assert found == meant and all(pair.sentence == 1 for pair in pairs)
 
 
-def test_sentences_of_unknown_counts_and_words_beyond_the_longest_text_are_left_out() -> None:
+def test_unknown_counts_and_words_beyond_the_longest_text_are_left_out() -> None:
     encoder, one = load_text_encoder(), read_labelled("clap twice => clap x2")
     longer = one._replace(text="please " * 80 + one.text)
     assert number_pairs(encoder, [one._replace(counts=None), longer]) == []
