@@ -49,12 +49,12 @@ def count_strokes(shown: PostureFeatures, family: str, side: str = "", direction
     counted = _counted_channels(family, own_side, direction)
     if counted is None:
         return None
-    names, turning_points = counted
+    names, turns_by_number = counted
     ref = reference(Gesture(family, own_side, _SHOWS_AXIS, direction))
     if not any(_moves(shown, ref, name) for name in names):
         return 0
     n = _turns(shown, ref, names)
-    return _NUMBERS[int(np.argmin(np.abs(np.array(turning_points) - n)))]
+    return _NUMBERS[int(np.argmin(np.abs(np.array(turns_by_number) - n)))]
 
 
 @lru_cache(maxsize=512)
@@ -72,7 +72,7 @@ def _counted_channels(family: str, side: str, direction: str) -> tuple[tuple[str
 
 
 def _times_done(shown: PostureFeatures, ref: Reference) -> int | None:
-    """How often a gesture without strokes is done, the last time perhaps without the way back; None for standing."""
+    """How often a motion leaves the rest pose for a gesture without strokes; None for standing, which never leaves it."""
     done = expected = 0
     for name in ref.acting:
         signal, meant = ref.along(shown, name), ref.along(ref.shown, name)

@@ -44,7 +44,7 @@ _FARTHEST = 1.0
 
 
 class Repetition(NamedTuple):
-    """How often a command is to be done.
+    """How often the generator repeats a command.
 
     Attributes:
         times: strokes, or performances of the whole gesture.

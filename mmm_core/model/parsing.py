@@ -1,4 +1,4 @@
-"""What a sentence parser says of one sentence: its likeliest answers, how likely an answer is, and which numbers it points at."""
+"""Asks a sentence parser about one sentence: for its likeliest answers, the probability of an answer, and its numbers."""
 
 from __future__ import annotations
 

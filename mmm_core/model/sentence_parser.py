@@ -109,7 +109,7 @@ def _joined(heads: Tensor) -> Tensor:
 
 
 class Memory(NamedTuple):
-    """What a parser knows of B sentences.
+    """The states of B sentences, which the parser computes once and the decoder attends to at each token.
 
     Attributes:
         words: (B, W, D) states of word pieces after its own layers.
@@ -135,7 +135,7 @@ class SentenceParser(nn.Module):
         self.numbers = NumberPointer(text.width, config.width)
 
     def remember(self, states: Tensor, mask: Tensor, dropout: float = 0.0) -> Memory:
-        """What is to be known of sentences before their tokens.
+        """Compute the states of sentences to which the decoder attends.
 
         Args:
             states: (B, W, D) states of word pieces after the encoder's shared layers.

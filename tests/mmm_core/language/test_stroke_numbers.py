@@ -7,9 +7,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from mmm_core.language.commands import PlainCommand, Reading
-from mmm_core.language.count_words import MOST, count_asked
+from mmm_core.language.count_words import MOST, count_asked, with_times, without_times
 from mmm_core.language.manner import Manner
 from mmm_core.language.number_words import NumberWord, number_words
+from mmm_core.language.plain_gestures import gesture_of, gestures, plain_command
 from mmm_core.language.stroke_numbers import with_numbers
 
 _GESTURES = (
@@ -35,6 +36,16 @@ def test_a_command_takes_any_number_and_keeps_its_manner(gesture: str, number: i
 def test_a_number_is_taken_off(gesture: str) -> None:
     read = with_numbers(Reading(gesture, ((PlainCommand(gesture),),)), [None], _PLAIN).steps[0][0].text
     assert count_asked(read) is None and read
+
+
+def test_no_plain_command_ends_in_a_word_that_is_taken_for_its_number() -> None:
+    for name in gestures():
+        for arm in ("", "left hand", "both hands", "alternating hands"):
+            if command := plain_command(name, arm):
+                assert (
+                    without_times(command) == command
+                    and gesture_of(with_times(command, 3)) == gesture_of(command) == name
+                )
 
 
 def test_each_command_has_its_own_number() -> None:
