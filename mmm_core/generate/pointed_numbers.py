@@ -40,8 +40,7 @@ def with_pointed_numbers(reading: Reading, models: WordModels) -> Reading:
     if n_more <= _FEW and Counter(one.value for one in numbers) == Counter(one for one in own if one):
         return reading
     meant = models.classes(commands)
-    parse = models.parse(models.encode(text))
-    likely = parse.number_probabilities([one.place for one in numbers], steps_asked(reading, meant))
+    likely = models.encode(text).parse.number_probabilities([one.place for one in numbers], steps_asked(reading, meant))
     if likely is None:
         return reading
     chosen = [_chosen(numbers, mine, likely[:, k].tolist()) for k, mine in enumerate(own)]

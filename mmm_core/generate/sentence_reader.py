@@ -13,14 +13,15 @@ from itertools import chain, takewhile
 
 import numpy as np
 
+from mmm_core.generate.encoded_sentence import Encoded, Parse
 from mmm_core.generate.pointed_numbers import with_pointed_numbers
-from mmm_core.generate.word_models import Encoded, Parse, WordModels
+from mmm_core.generate.word_models import WordModels
 from mmm_core.inference.onednn_linear import Packing
 from mmm_core.language.asides import without_asides
 from mmm_core.language.candidates import Candidate, Ways, chosen, commands_of, in_sentence, is_task, merged
 from mmm_core.language.commands import EXACTLY, Reading
 from mmm_core.language.denial import surely_denies
-from mmm_core.language.gesture_steps import NO_GESTURE, is_all_gestures
+from mmm_core.language.gesture_steps import NO_GESTURE, GestureSteps, is_all_gestures
 from mmm_core.language.hard_phrases import without_hard_phrases
 from mmm_core.language.joined import with_parted_commands
 from mmm_core.language.manner_words import likely_manners
@@ -52,6 +53,8 @@ _DIVISIONS = 8
 """Sequences of tags that are looked at, at most."""
 _PROPOSALS = 4
 """Answers of the parser that are looked at, at most."""
+_LOG_SURE = math.log(0.85)
+"""Log-probability from which on an answer is so likely that no other one is sought; training leaves none much above 0.9."""
 _LOG_NOTHING = math.log(0.8)
 """Least log-probability that a sentence without negative words asks for nothing, as "my cat waved at me" does, to be read so."""
 _FIRST_SENTENCE = "nod, and once you have done that, wave to the people who are waiting"
@@ -135,7 +138,7 @@ class SentenceReader:
         found: list[Candidate] = []
         plain = with_plain_manner(words, phrases)
         if plain != words and 0 < len(words_of(plain)) <= MAX_WORD_PIECES:
-            of_plain = self._models.encode(plain, states.meant)
+            of_plain = self._models.encode(plain)
             found += [replace(one, by_rules=False, sure_rules=False) for one in self._candidates(plain, of_plain)]
         found += self._candidates(words, states)
         if by_rules.denied:  # what is denied must not be done
@@ -165,16 +168,26 @@ class SentenceReader:
 
     def _parsed(self, candidates: list[Candidate], text: str, states: Encoded) -> tuple[list[Candidate], float]:
         """Candidates and those that the parser proposes, each with its probability by the parser; and that of no gesture."""
-        parse = self._models.parse(states)
-        found = [*candidates, *self._proposed(candidates, text, states.meant, parse)]
-        meant = self._models.classes(commands_of(found))
-        answers = [steps_asked(one.reading, meant) for one in found]
-        *logs, outside, nothing = parse.log_likelihoods([*answers, NO_GESTURE, ()])
+        parse = states.parse
+        logs = _log_likelihoods(parse, [*self._answers(candidates), NO_GESTURE, ()])
+        outside, nothing = math.exp(logs[NO_GESTURE]), logs[()]
         if nothing >= _LOG_NOTHING and not may_deny(text):
-            return [Candidate(Reading(text, ()), by_parser=True, log_parsed=nothing)], math.exp(outside)
-        return merged(replace(one, log_parsed=log) for one, log in zip(found, logs, strict=True)), math.exp(outside)
+            return [Candidate(Reading(text, ()), by_parser=True, log_parsed=nothing)], outside
+        best = max(logs, key=lambda answer: logs[answer])
+        likeliest = [best] if logs[best] >= _LOG_SURE else parse.likeliest(_PROPOSALS)
+        found = [*candidates, *self._proposed(candidates, text, states.meant, likeliest)]
+        answers = self._answers(found)
+        logs |= _log_likelihoods(parse, [answer for answer in answers if answer not in logs])
+        return merged(replace(one, log_parsed=logs[of]) for one, of in zip(found, answers, strict=True)), outside
 
-    def _proposed(self, candidates: Sequence[Candidate], text: str, whole: Meant, parse: Parse) -> list[Candidate]:
+    def _answers(self, candidates: Sequence[Candidate]) -> list[GestureSteps]:
+        """The answer of the parser that each candidate would be."""
+        meant = self._models.classes(commands_of(candidates))
+        return [steps_asked(one.reading, meant) for one in candidates]
+
+    def _proposed(
+        self, candidates: Sequence[Candidate], text: str, whole: Meant, likeliest: Sequence[GestureSteps]
+    ) -> list[Candidate]:
         """Readings in the gestures that the parser finds likeliest.
 
         None where another reading has a task that must be refused, or is one command of arms in turn. A sentence that may deny and
@@ -188,7 +201,7 @@ class SentenceReader:
         may_be_nothing = may_deny(text)
         is_nothing = may_be_nothing and whole.denied >= SURELY_DENIED
         # Answers after one with something that is no gesture are dropped: they would leave out what must be refused.
-        answers = takewhile(is_all_gestures, parse.likeliest(_PROPOSALS))
+        answers = takewhile(is_all_gestures, likeliest)
         allowed = (
             steps
             for steps in answers
@@ -204,7 +217,7 @@ class SentenceReader:
             marked = marked_commands(words, without_splits(words, sequence))
             if can_be_read(marked) and (may_deny(words) or not marked.denied):
                 divisions.setdefault(marked, log)
-        meant = self._models.classes_in_sentence(states, list(divisions))
+        meant = states.classes(list(divisions))
         best = max(divisions.values(), default=0.0)
         by_rules = read(words)
         found = [Candidate(by_rules, by_rules=True, sure_rules=is_sure(by_rules))]
@@ -227,6 +240,12 @@ class SentenceReader:
             return self._in_plain_words(parted, states)
         by_words = {text: one.manners for text, one in by_text.items()}
         return in_plain_words(with_likely_manner(without_asides(found, by_text), {}, by_words), whole, by_text)
+
+
+def _log_likelihoods(parse: Parse, answers: Sequence[GestureSteps]) -> dict[GestureSteps, float]:
+    """`Parse.log_likelihoods` of answers that may be equal."""
+    different = list(dict.fromkeys(answers))
+    return dict(zip(different, parse.log_likelihoods(different), strict=True))
 
 
 def _of_tags(states: Encoded) -> dict[str, float]:

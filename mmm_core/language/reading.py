@@ -10,6 +10,7 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import lru_cache
 
 from mmm_core.language.alternatives import anything_but, otherwise
 from mmm_core.language.at_once import divided, same_limbs
@@ -30,6 +31,7 @@ from mmm_core.language.requests import everyday, greeting, restated, rewritten, 
 from mmm_core.language.run_on import with_marks
 from mmm_core.language.spelling import mended, normalised
 from mmm_core.language.stop_words import after_a_stop
+from mmm_core.language.word_tables import REMEMBERED
 
 _PAST = re.compile(r"^(?!(?:raised|stretched|crossed|folded|extended|red)\b (?:hand|arm|fist)s?\b)(?!\w*eed\b)\w+ed\b")
 """The verb of "once you have clapped", "if you crossed"."""
@@ -53,6 +55,7 @@ _ACT_ON_IT = re.compile(r"((?!do\b)\w+) (?:it|them)\b(?: (?:away|off)\b)?")
 """A part of the robot that a sentence names before a pronoun stands for it: "there is a fly on your nose, scratch it"."""
 
 
+@lru_cache(maxsize=REMEMBERED)
 def read(text: str, *, by_rules_alone: bool = False) -> Reading:
     """The commands of a sentence.
 

@@ -7,11 +7,11 @@ from __future__ import annotations
 
 import re
 import unicodedata
-from functools import cache
+from functools import cache, lru_cache
 from itertools import pairwise
 
 from mmm_core.language.slips import without_slips
-from mmm_core.language.word_tables import WAY, RuleTable, pairs, replaced, substitutions
+from mmm_core.language.word_tables import REMEMBERED, WAY, RuleTable, pairs, replaced, substitutions
 
 _FILLER = r"(?:u+h+m*|u+m+|e+r+m*|h+m+|ah+|eh+)"
 _RESTART = re.compile(
@@ -50,6 +50,7 @@ def _shortened(found: re.Match[str]) -> str:
     return found[1] * 2 if found[1].lower() in "oeh" else found[1]
 
 
+@lru_cache(maxsize=REMEMBERED)
 def mended(text: str) -> str:
     """Text in lower case with chat words, fillers, restarts, homophones and misspellings corrected; punctuation stays.
 

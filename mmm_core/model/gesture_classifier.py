@@ -60,11 +60,19 @@ class GestureClassifier(nn.Module):
         Returns:
             (N, classes) scores of classes, (B, manners) of each manner by itself, and (B,) that nothing may move.
         """
+        return self.scores(self.own_states(states, mask, dropout), mask, parts)
+
+    def own_states(self, states: Tensor, mask: Tensor, dropout: float = 0.0) -> Tensor:
+        """States (B, W, D) after its own layers; arguments of `forward`."""
         x = F.dropout(states, dropout, self.training)
         for layer in self.layers:
             x = F.dropout(layer(x, mask[:, None, None, :]), dropout, self.training)
-        whole = _mean(x, mask)
-        return self.gesture(_mean(x, parts)), self.manner(whole), self.denial(whole).squeeze(-1)
+        return x
+
+    def scores(self, own: Tensor, mask: Tensor, parts: Tensor) -> tuple[Tensor, Tensor, Tensor]:
+        """What `forward` returns, from the states (B, W, D) of `own_states`."""
+        whole = _mean(own, mask)
+        return self.gesture(_mean(own, parts)), self.manner(whole), self.denial(whole).squeeze(-1)
 
 
 def _mean(x: Tensor, where: Tensor) -> Tensor:
@@ -81,13 +89,20 @@ MeantByText = tuple[str, float, dict[str, float], float]
 def meant_by(classifier: GestureClassifier, encoder: MiniLm, texts: Sequence[str]) -> list[MeantByText]:
     """The class, the manners and the denial of each text."""
     ids, mask = encoder.piece_ids(list(texts))
-    return meant_by_states(classifier, encoder.lower_states(ids, mask, classifier.config.n_shared), mask)
+    states = encoder.lower_states(ids, mask, classifier.config.n_shared)
+    return meant_by_states(classifier, own_states(classifier, states, mask), mask)
 
 
 @torch.inference_mode()
-def meant_by_states(classifier: GestureClassifier, states: Tensor, mask: Tensor) -> list[MeantByText]:
-    """The class, the manners and the denial of each of B texts, from states (B, W, D) and mask (B, W) of `forward`."""
-    classes, manners, denials = classifier(states, mask, mask)
+def own_states(classifier: GestureClassifier, states: Tensor, mask: Tensor) -> Tensor:
+    """`GestureClassifier.own_states` without gradients."""
+    return classifier.own_states(states, mask)
+
+
+@torch.inference_mode()
+def meant_by_states(classifier: GestureClassifier, own: Tensor, mask: Tensor) -> list[MeantByText]:
+    """The class, the manners and the denial of each of B texts, from their `own_states` (B, W, D) and mask (B, W)."""
+    classes, manners, denials = classifier.scores(own, mask, mask)
     of_manners, of_denial = torch.sigmoid(manners.float()).tolist(), torch.sigmoid(denials.float()).tolist()
     return [
         (name, p, dict(zip(classifier.config.manners, some, strict=True)), denied)
@@ -96,16 +111,15 @@ def meant_by_states(classifier: GestureClassifier, states: Tensor, mask: Tensor)
 
 
 @torch.inference_mode()
-def meant_by_parts(classifier: GestureClassifier, states: Tensor, parts: Tensor) -> list[tuple[str, float]]:
+def meant_by_parts(classifier: GestureClassifier, own: Tensor, parts: Tensor) -> list[tuple[str, float]]:
     """The likeliest class of each of N parts of one text, with its probability.
 
     Args:
         classifier: the classifier.
-        states: (W, D) states of the text's word pieces after the shared layers.
+        own: (1, W, D) `own_states` of the text.
         parts: (N, W) bool, the word pieces of each part, at least one.
     """
-    mask = torch.ones(1, len(states), dtype=torch.bool)
-    return _likeliest(classifier, classifier(states[None], mask, parts)[0])
+    return _likeliest(classifier, classifier.gesture(_mean(own, parts)))
 
 
 def _likeliest(classifier: GestureClassifier, scores: Tensor) -> list[tuple[str, float]]:

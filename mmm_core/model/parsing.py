@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import NamedTuple
 
@@ -10,6 +11,9 @@ import torch.nn.functional as F
 from torch import Tensor
 
 from mmm_core.model.sentence_parser import END_ID, START_ID, TOKENS_OF_GESTURE, KeyValueCache, Memory, SentenceParser
+
+_UNLIKELY = math.log(1e-3)
+"""Log-probability of a sequence beside that of the likeliest one below which it is not sought any further."""
 
 
 class Parsed(NamedTuple):
@@ -38,7 +42,7 @@ def log_likelihoods(parser: SentenceParser, memory: Memory, sequences: Sequence[
 
 @torch.inference_mode()
 def likeliest(parser: SentenceParser, memory: Memory, n: int) -> list[Parsed]:
-    """About the n likeliest sequences for one sentence, by beam search, the likeliest first."""
+    """About the n likeliest sequences for one sentence, by beam search, the likeliest first; very unlikely ones are left out."""
     beams, done = [Parsed((START_ID,), 0.0)], list[Parsed]()
     caches = [KeyValueCache() for _ in parser.decoder]
     for n_before in range(parser.config.longest - 1):
@@ -54,12 +58,16 @@ def likeliest(parser: SentenceParser, memory: Memory, n: int) -> list[Parsed]:
                 done.append(Parsed(ids[1:], log_probability))
             else:
                 grown.append((beam, Parsed((*ids, token), log_probability)))
-        beams = [one for _, one in grown[:n]]
         done.sort(key=lambda one: -one.log_probability)
-        if len(done) >= n and done[n - 1].log_probability >= beams[0].log_probability:
+        least = max(best.values[0].item(), done[0].log_probability if done else -math.inf) + _UNLIKELY
+        if len(done) >= n:
+            least = max(least, done[n - 1].log_probability)
+        grown = [(beam, one) for beam, one in grown[:n] if one.log_probability > least]
+        if not grown:
             break
+        beams = [one for _, one in grown]
         for cache in caches:
-            cache.keep(torch.tensor([beam for beam, _ in grown[:n]]))
+            cache.keep(torch.tensor([beam for beam, _ in grown]))
     return done[:n]
 
 

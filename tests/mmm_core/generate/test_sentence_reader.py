@@ -10,8 +10,8 @@ from pathlib import Path
 import pytest
 
 from mmm_core.corpus.heldout import PROBES, read_sentences
+from mmm_core.generate.encoded_sentence import Encoded
 from mmm_core.generate.sentence_reader import SentenceReader
-from mmm_core.generate.word_models import WordModels
 from mmm_core.language.commands import Reading
 from mmm_core.language.gesture_steps import ANY_ARM, ArmGesture, GestureSteps
 from mmm_core.language.mirroring import mirror_words
@@ -166,10 +166,17 @@ def test_the_parser_proposes_nothing_that_is_denied_or_must_be_refused(
     reader: SentenceReader, monkeypatch: pytest.MonkeyPatch, text: str, gestures: tuple[str, ...], is_proposed: bool
 ) -> None:
     steps = tuple((ArmGesture(ANY_ARM, gesture),) for gesture in gestures)
-    monkeypatch.setattr(WordModels, "parse", lambda *_: _Answers(steps))
+    monkeypatch.setattr(Encoded, "parse", _Answers(steps))
     ways = reader.ways_to_read(text)
     assert ways is not None
     assert any(one.by_parser for one in ways.candidates) is is_proposed
+
+
+def test_capitals_change_nothing_and_are_not_encoded_anew(reader: SentenceReader) -> None:
+    models, text = reader._models, "Nod to the King, then Wave"
+    assert models.encode(text) is models.encode(text.lower())
+    assert models.encode(text) is not models.encode("bow to the king, then wave")
+    assert reader.read(text).words == reader.read(text.upper()).words
 
 
 @pytest.mark.parametrize(

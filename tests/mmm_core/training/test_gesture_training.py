@@ -16,7 +16,7 @@ from mmm_core.errors import CheckpointError
 from mmm_core.inference.checkpoint import load_text_encoder, save_tensors
 from mmm_core.inference.own_layers_file import load_classifier
 from mmm_core.language.plain_gestures import OUTSIDE, SEVERAL, gestures
-from mmm_core.model.gesture_classifier import meant_by, meant_by_parts
+from mmm_core.model.gesture_classifier import meant_by, meant_by_parts, own_states
 from mmm_core.model.sentence_tagger import pieces_of, word_states
 from mmm_core.training.drawn_text import SETTLING_SHARES, SHARES, Drawn
 from mmm_core.training.gesture_texts import Texts
@@ -52,7 +52,8 @@ def test_it_learns_the_texts_it_is_given_and_is_read_back(tmp_path: Path, monkey
         words = word_states(
             encoder, classifier.config.n_shared, [["once", "you", "have", "knocked", ",", "look", "up"]]
         )[0]
-        parts = meant_by_parts(classifier, words.states, pieces_of(words, [(3,), (5, 6)]))
+        own = own_states(classifier, words.states[None], torch.ones(1, len(words.states), dtype=torch.bool))
+        parts = meant_by_parts(classifier, own, pieces_of(words, [(3,), (5, 6)]))
         assert [name for name, _ in parts] == ["knock", "look/up"]
     assert all(not p.requires_grad for p in trained.parameters())
 
