@@ -175,7 +175,8 @@ class SentenceReader:
             return [Candidate(Reading(text, ()), by_parser=True, log_parsed=nothing)], outside
         best = max(logs, key=lambda answer: logs[answer])
         likeliest = [best] if logs[best] >= _LOG_SURE else parse.likeliest(_PROPOSALS)
-        found = [*candidates, *self._proposed(candidates, text, states.meant, likeliest)]
+        logs |= _log_likelihoods(parse, [answer for answer in likeliest if answer not in logs])
+        found = [*candidates, *self._proposed(candidates, text, states.meant, {one: logs[one] for one in likeliest})]
         answers = self._answers(found)
         logs |= _log_likelihoods(parse, [answer for answer in answers if answer not in logs])
         return merged(replace(one, log_parsed=logs[of]) for one, of in zip(found, answers, strict=True)), outside
@@ -186,9 +187,9 @@ class SentenceReader:
         return [steps_asked(one.reading, meant) for one in candidates]
 
     def _proposed(
-        self, candidates: Sequence[Candidate], text: str, whole: Meant, likeliest: Sequence[GestureSteps]
+        self, candidates: Sequence[Candidate], text: str, whole: Meant, likeliest: Mapping[GestureSteps, float]
     ) -> list[Candidate]:
-        """Readings in the gestures that the parser finds likeliest.
+        """Readings in the gestures that the parser finds likeliest, each given with the logarithm of its probability.
 
         None where another reading has a task that must be refused, or is one command of arms in turn. A sentence that may deny and
         in all likelihood asks for nothing has no commands.
@@ -205,7 +206,8 @@ class SentenceReader:
         allowed = (
             steps
             for steps in answers
-            if (not is_nothing if steps else may_be_nothing) and keeps_denials(steps, readings, meant, acts)
+            if (not is_nothing if steps else may_be_nothing)
+            and keeps_denials(steps, readings, meant, acts, likeliest[steps])
         )
         found = (reading_in(steps, text, readings, meant) for steps in allowed)
         return [Candidate(one, by_parser=True) for one in found if one is not None]

@@ -5,6 +5,7 @@ What other readings of the sentence deny is kept: an answer that might do it is 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 
@@ -14,6 +15,12 @@ from mmm_core.language.gesture_steps import LEFT, RIGHT, ArmGesture, GestureStep
 from mmm_core.language.limbs import limbs_of
 from mmm_core.language.manner import manner_of
 from mmm_core.language.plain_gestures import OUTSIDE, Meant, family_of, is_gesture, is_sure_of
+
+_LOG_SURE = math.log(0.75)
+"""Log-probability from which on the parser is believed beside a denial whose act is not known.
+
+Of 1,505 sentences that three writers wrote, most of which deny something, 15 are read rightly thereby and none wrongly.
+"""
 
 
 def steps_asked(reading: Reading, meant: Mapping[str, Meant]) -> GestureSteps:
@@ -52,21 +59,27 @@ def reading_in(steps: GestureSteps, text: str, others: Sequence[Reading], meant:
 
 
 def keeps_denials(
-    steps: GestureSteps, others: Sequence[Reading], meant: Mapping[str, Meant], acts: Mapping[str, Meant]
+    steps: GestureSteps,
+    others: Sequence[Reading],
+    meant: Mapping[str, Meant],
+    acts: Mapping[str, Meant],
+    log_parsed: float = -math.inf,
 ) -> bool:
-    """Whether steps surely have nothing that another reading of the sentence denies.
+    """Whether steps in all likelihood have nothing that another reading of the sentence denies.
 
-    Beside a denial whose act is not known, only gestures of readings with that denial are sure.
+    Beside a denial whose act is not known ("don't swat it"), only gestures of readings with that denial are likely, unless the
+    parser, which knows of denials as well, is sure of the steps. What may be an act that is denied never is.
 
     Args:
         steps: the gestures.
         others: the other readings.
         meant: what each of their commands means by itself.
         acts: what each of the acts that they deny means by itself.
+        log_parsed: logarithm of the parser's probability of the steps.
     """
     flat = [one for step in steps for one in step]
     for other in others:
-        if not all(is_sure_of(acts[words]) for words in other.denied):
+        if log_parsed < _LOG_SURE and not all(is_sure_of(acts[words]) for words in other.denied):
             asked = {one.gesture for step in steps_asked(other, meant) for one in step}
             if any(one.gesture not in asked for one in flat):
                 return False

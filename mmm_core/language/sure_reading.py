@@ -66,12 +66,14 @@ def is_sure(reading: Reading) -> bool:
 def needs_tags(reading: Reading) -> bool:
     """Whether the rules are not sure, or the sentence has words that they often divide wrongly or that may say a manner.
 
+    So has one that denies something beside a command, which may be the reason: "no carrying, you'll drop it". Of 3,205 sentences by
+    five writers that they read surely, networks mend 12 such and spoil 3.
     Words that may say a manner are in a command that is no phrase of the corpus, or in a comparison that was left out.
     """
     commands = [_BESIDE.sub("", command.text.lower()) for step in reading.steps for command in step]
     if len(commands) == 1 and _IS_CAPTION.match(commands[0]):
         return False
-    if _may_be_divided_wrongly(reading):
+    if _may_be_divided_wrongly(reading) or (reading.denied and reading.steps):
         return True
     known = all(key_of(command) is None or is_known_phrase(command) for command in commands)
     compares = _COMPARES.search(reading.text) is not None and not any(map(_COMPARES.search, commands))

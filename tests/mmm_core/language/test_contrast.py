@@ -185,7 +185,7 @@ def test_order(text: str, read_as: str) -> None:
         ("wave like mad", "wave (1.7 times as fast)"),
         ("take ages to raise your left arm", "raise your left arm (0.55 times as fast)"),
         ("wave small", "wave (0.6 times as large)"),
-        ("a slow, deep bow", "a deep bow (0.62 times as fast)"),
+        ("a slow, deep bow", "a bow (0.62 times as fast, 1.4 times as large)"),
         # and what looks like it
         ("point at the small dog", "point forward"), ("take a long time out", "take a long time out"),
     ],

@@ -170,6 +170,18 @@ PHRASES = {
     'a stretch': (
         'time for a stretch',
     ),
+    'march with your arms': (
+        'march',
+    ),
+    'type on a keyboard': (
+        'type, please',
+    ),
+    'bow (1.4 times as large)': (
+        'bow low', 'bow down low to the king',
+    ),
+    'a bow (1.4 times as large)': (
+        'a deep bow', 'a low bow please',
+    ),
 }  # fmt: skip
 """Each command, and the phrases that mean it. The last third was written after the rules for the first two thirds
 and before its own rules."""
@@ -194,6 +206,7 @@ def test_a_phrase_means_a_gesture(text: str, command: str) -> None:
         ("thank you, now nod", "bow politely; nod"), ("yes, but slowly", "nod your head (0.62 times as fast)"),
         ("raise your hand and say hello", "raise your hand and say hello"), ("cover your eyes", "cover your eyes"),
         ("gotta go, bye", "wave your right hand"), ("shoo, go away", "wave me away with your right hand"),
+        ("march to the kitchen", "march to the kitchen"), ("take deep breaths and bow", "take deep breaths; bow"),
     ],
 )  # fmt: skip
 def test_what_looks_like_one(text: str, read_as: str) -> None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import pytest
 
 from mmm_core.language.commands import PlainCommand, Reading
@@ -74,6 +76,22 @@ def test_what_a_reading_denies_is_not_done(one: ArmGesture, denied: list[str], i
     """Beside a denial of unknown words only what its reading does is sure: a bow and a wave here."""
     denying = Reading("text", READ.steps, denied=tuple(denied))
     assert keeps_denials(((one,),), [READ, denying], MEANT, MEANT) is is_kept
+
+
+@pytest.mark.parametrize(
+    ("gesture", "denied", "log_parsed", "is_kept"),
+    [
+        ("nod", "both of it", math.log(0.9), True),
+        ("nod", "both of it", math.log(0.6), False),
+        ("look/up", "look up", math.log(0.9), False),
+    ],
+)
+def test_beside_an_unknown_denial_the_parser_is_believed_if_sure(
+    gesture: str, denied: str, log_parsed: float, is_kept: bool
+) -> None:
+    denying = Reading("text", READ.steps, denied=(denied,))
+    steps = ((ArmGesture(ANY_ARM, gesture),),)
+    assert keeps_denials(steps, [denying], MEANT, MEANT, log_parsed) is is_kept
 
 
 def test_what_nobody_could_do_is_no_reading() -> None:

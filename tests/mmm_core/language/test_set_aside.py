@@ -32,7 +32,7 @@ from tests.support.readings import said
         ("a bow is what I asked for, not a nod", "a bow | not: a nod"),
         ("I asked for a nod. I didn't ask for a hug.", "a nod | not: a hug"),
         ("keep your hands off your hips and fold your arms", "fold your arms | not: put your hands on your hips"),
-        ("beckon, don't point, it's rude to point at people", "beckon | not: point"),
+        ("beckon, don't point, it's rude to point at people", "beckon with a hand | not: point"),
         ("with your left please, and not your right, wave at grandma", "wave with your left hand"),
         ("clap your hands. No, don't. Wave", "wave | not: clap your hands"),
         ("wave, no, bow", "bow | not: wave"),

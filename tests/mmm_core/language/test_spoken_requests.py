@@ -69,7 +69,7 @@ def test_what_is_read(text: str, read_as: str) -> None:
         ("hold out your left hand, palm up, then close the fingers",
          "hold out your left hand with the palm up; close your left fingers"),
         ("my son is a bit shy, so maybe start by giving him a tiny wave", "wave your right hand (0.56 times as large)"),
-        ("ladies and gentlemen, our robot will now take a deep bow", "take a deep bow"),
+        ("ladies and gentlemen, our robot will now take a deep bow", "bow politely (1.4 times as large)"),
         ("could you please, when the lights go out, raise your right hand so that the people behind you know where you are",
          "raise your right hand"),
         ("you know what would be great right now? A big round of applause", "clap your hands"),
