@@ -114,6 +114,7 @@ class Parse:
     def __init__(self, parser: SentenceParser, words: WordStates, is_image: bool) -> None:
         self._parser, self._first_pieces, self._is_image = parser, words.first_pieces, is_image
         self._memory = memory_of(parser, words.states)
+        self._logs: dict[GestureSteps, float] = {}
 
     def likeliest(self, n: int) -> list[GestureSteps]:
         """The likeliest answers, n at most, the likeliest first."""
@@ -123,15 +124,19 @@ class Parse:
     def log_likelihoods(self, answers: Sequence[GestureSteps]) -> list[float]:
         """The logarithm of the probability of each answer; of what is done at the same time, in the likeliest order.
 
-        An answer that is longer than any that the parser has learnt from is impossible.
+        An answer that is longer than any that the parser has learnt from is impossible. Each answer is computed once.
         """
-        orders = [[token_ids(one) for one in in_every_order(self._seen(answer))] for answer in answers]
-        fitting = [ids for some in orders for ids in some if len(ids) <= self._parser.config.longest]
+        new = [answer for answer in dict.fromkeys(answers) if answer not in self._logs]
+        orders = {answer: self._token_ids(answer) for answer in new}
+        fitting = [ids for some in orders.values() for ids in some]
         logs = iter(log_likelihoods(self._parser, self._memory, fitting) if fitting else ())
-        return [
-            max((next(logs) for ids in some if len(ids) <= self._parser.config.longest), default=-math.inf)
-            for some in orders
-        ]
+        self._logs |= {answer: max((next(logs) for _ in some), default=-math.inf) for answer, some in orders.items()}
+        return [self._logs[answer] for answer in answers]
+
+    def _token_ids(self, answer: GestureSteps) -> list[list[int]]:
+        """The tokens of an answer in every order of what is done at the same time, without those that are too long."""
+        ids = [token_ids(one) for one in in_every_order(self._seen(answer))]
+        return [one for one in ids if len(one) <= self._parser.config.longest]
 
     def number_probabilities(self, places: Sequence[int], answer: GestureSteps) -> NDArray[np.float32] | None:
         """(N, K) probabilities that the words at N places say how often each of the K gestures of an answer is to be done.

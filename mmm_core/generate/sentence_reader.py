@@ -13,7 +13,7 @@ from itertools import chain, takewhile
 
 import numpy as np
 
-from mmm_core.generate.encoded_sentence import Encoded, Parse
+from mmm_core.generate.encoded_sentence import Encoded
 from mmm_core.generate.pointed_numbers import with_pointed_numbers
 from mmm_core.generate.word_models import WordModels
 from mmm_core.inference.onednn_linear import Packing
@@ -29,7 +29,6 @@ from mmm_core.language.parsed_reading import denies_itself, keeps_denials, readi
 from mmm_core.language.plain_gestures import (
     OUTSIDE,
     SURELY_DENIED,
-    Meant,
     alternates,
     in_plain_words,
     is_likely_outside,
@@ -168,18 +167,16 @@ class SentenceReader:
 
     def _parsed(self, candidates: list[Candidate], text: str, states: Encoded) -> tuple[list[Candidate], float]:
         """Candidates and those that the parser proposes, each with its probability by the parser; and that of no gesture."""
-        parse = states.parse
-        logs = _log_likelihoods(parse, [*self._answers(candidates), NO_GESTURE, ()])
-        outside, nothing = math.exp(logs[NO_GESTURE]), logs[()]
+        answers = [*self._answers(candidates), NO_GESTURE, ()]
+        logs = states.parse.log_likelihoods(answers)
+        *_, outside, nothing = logs
         if nothing >= _LOG_NOTHING and not may_deny(text):
-            return [Candidate(Reading(text, ()), by_parser=True, log_parsed=nothing)], outside
-        best = max(logs, key=lambda answer: logs[answer])
-        likeliest = [best] if logs[best] >= _LOG_SURE else parse.likeliest(_PROPOSALS)
-        logs |= _log_likelihoods(parse, [answer for answer in likeliest if answer not in logs])
-        found = [*candidates, *self._proposed(candidates, text, states.meant, {one: logs[one] for one in likeliest})]
-        answers = self._answers(found)
-        logs |= _log_likelihoods(parse, [answer for answer in answers if answer not in logs])
-        return merged(replace(one, log_parsed=logs[of]) for one, of in zip(found, answers, strict=True)), outside
+            return [Candidate(Reading(text, ()), by_parser=True, log_parsed=nothing)], math.exp(outside)
+        best, answer = max(zip(logs, answers, strict=True))
+        likeliest = [answer] if best >= _LOG_SURE else states.parse.likeliest(_PROPOSALS)
+        found = [*candidates, *self._proposed(candidates, text, states, likeliest)]
+        logs = states.parse.log_likelihoods(self._answers(found))
+        return merged(replace(one, log_parsed=log) for one, log in zip(found, logs, strict=True)), math.exp(outside)
 
     def _answers(self, candidates: Sequence[Candidate]) -> list[GestureSteps]:
         """The answer of the parser that each candidate would be."""
@@ -187,9 +184,9 @@ class SentenceReader:
         return [steps_asked(one.reading, meant) for one in candidates]
 
     def _proposed(
-        self, candidates: Sequence[Candidate], text: str, whole: Meant, likeliest: Mapping[GestureSteps, float]
+        self, candidates: Sequence[Candidate], text: str, states: Encoded, likeliest: Sequence[GestureSteps]
     ) -> list[Candidate]:
-        """Readings in the gestures that the parser finds likeliest, each given with the logarithm of its probability.
+        """Readings in the gestures that the parser finds likeliest.
 
         None where another reading has a task that must be refused, or is one command of arms in turn. A sentence that may deny and
         in all likelihood asks for nothing has no commands.
@@ -200,14 +197,13 @@ class SentenceReader:
             return []
         acts = self._models.classes(list(dict.fromkeys(chain.from_iterable(one.denied for one in readings))))
         may_be_nothing = may_deny(text)
-        is_nothing = may_be_nothing and whole.denied >= SURELY_DENIED
+        is_nothing = may_be_nothing and states.meant.denied >= SURELY_DENIED
         # Answers after one with something that is no gesture are dropped: they would leave out what must be refused.
-        answers = takewhile(is_all_gestures, likeliest)
+        answers = list(takewhile(is_all_gestures, likeliest))
         allowed = (
             steps
-            for steps in answers
-            if (not is_nothing if steps else may_be_nothing)
-            and keeps_denials(steps, readings, meant, acts, likeliest[steps])
+            for steps, log in zip(answers, states.parse.log_likelihoods(answers), strict=True)
+            if (not is_nothing if steps else may_be_nothing) and keeps_denials(steps, readings, meant, acts, log)
         )
         found = (reading_in(steps, text, readings, meant) for steps in allowed)
         return [Candidate(one, by_parser=True) for one in found if one is not None]
@@ -242,12 +238,6 @@ class SentenceReader:
             return self._in_plain_words(parted, states)
         by_words = {text: one.manners for text, one in by_text.items()}
         return in_plain_words(with_likely_manner(without_asides(found, by_text), {}, by_words), whole, by_text)
-
-
-def _log_likelihoods(parse: Parse, answers: Sequence[GestureSteps]) -> dict[GestureSteps, float]:
-    """`Parse.log_likelihoods` of answers that may be equal."""
-    different = list(dict.fromkeys(answers))
-    return dict(zip(different, parse.log_likelihoods(different), strict=True))
 
 
 def _of_tags(states: Encoded) -> dict[str, float]:

@@ -49,7 +49,7 @@ def test_a_line_that_cannot_be_read_is_refused(line: str) -> None:
 
 def test_all_that_ship_are_read_and_none_is_of_an_evaluation() -> None:
     given = load_labelled_sentences()
-    assert len(given) == 38_112
+    assert len(given) == 44_507
     named = {one.gesture for sentence in given for step in sentence.steps for one in step}
     assert named == {*gestures(), OUTSIDE}
     assert len(SETS) > 8
