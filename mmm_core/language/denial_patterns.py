@@ -156,7 +156,8 @@ ANY_ARM_BUT = re.compile(
 )
 SURELY_DENIES = re.compile(
     r"^\W*(?:\w+,? )?(?:(?:nobody|no one|none of us)(?:'s)? (?:asked|asks|wants|needs|likes)|never ever|do not you dare|under no circumstances|on no account|in no case|by no means|cancel|abort|call off|quit|"
-    r"no (?:\w+ ){1,2}(?:tonight|today|this time|now|anymore|any more)(?=$|[,.;]))"
+    r"no (?:\w+ ){1,2}(?:tonight|today|this time|now|anymore|any more)(?=$|[,.;]))|"
+    r"^\W*(?:no,? )*(?:please,? )?(?:do not|don'?t) do (?:anything|a thing)(?: at all| now)?(?=$|[,.;!])"
 )
 """Words after which even what is no known act is not to be done."""
 HAS_SIDE = re.compile(r"\b(?:left|right|both)\b")
