@@ -18,6 +18,9 @@ from mmm_core.model.gesture_classifier import meant_by
 from mmm_core.model.sentence_tagger import word_states
 from mmm_core.model.text import MiniLm
 
+_KEPT = 4
+"""Encoded sentences that are kept: a sentence, the same with its manner in plain words, and the same with its spelling mended."""
+
 
 class WordModels:
     """The networks that read sentences.
@@ -30,7 +33,7 @@ class WordModels:
     def __init__(self, encoder: MiniLm, networks: Networks) -> None:
         self._encoder, self._networks = encoder, networks
         self._classified: dict[str, Meant] = {}
-        self._last: tuple[tuple[tuple[str, ...], bool], Encoded] | None = None
+        self._encoded: dict[tuple[tuple[str, ...], bool], Encoded] = {}
 
     @classmethod
     def load(cls, encoder: MiniLm | None = None, precision: Packing = "fp32") -> WordModels:
@@ -51,24 +54,25 @@ class WordModels:
                 "other gestures",
                 "those of plain_gestures.txt; make a new one: mmmd train parser",
             )
-        for one in (
-            tagger,
-            classifier,
-            parser.layers,
-        ):  # the decoder's matrices have a few rows, which packing makes slower
+        # The decoder's matrices have one to four rows. On an AMD EPYC without AVX-512 its search takes 18 ms with plain layers and
+        # 22 with packed ones.
+        for one in (tagger, classifier, parser.layers):
             pack(one, precision)
         return cls(encoder or load_text_encoder(), Networks(tagger, classifier, parser))
 
     def encode(self, sentence: str) -> Encoded:
-        """A sentence as the networks see it; of one that differs from the last one in capitals alone, what they said of that."""
+        """A sentence as the networks see it; one that differs from one of the last few in capitals alone is not encoded anew."""
         image, is_image = canonical(sentence)
         if len(words_of(image)) != len(words_of(sentence)):  # tags are of the sentence's own words
             image, is_image = sentence, False
         words = tuple(image[start:end].lower() for start, end in words_of(image))
-        if self._last is None or self._last[0] != (words, is_image):
+        found = self._encoded.get((words, is_image))
+        if found is None:
             states = word_states(self._encoder, self._networks.tagger.config.n_shared, [words])[0]
-            self._last = (words, is_image), Encoded(states, is_image, self._networks)
-        return self._last[1]
+            found = Encoded(states, is_image, self._networks)
+            last = list(self._encoded.items())[1 - _KEPT :]
+            self._encoded = dict([*last, ((words, is_image), found)])
+        return found
 
     def classes(self, commands: Sequence[str]) -> dict[str, Meant]:
         """The gesture that each command most likely asks for by itself, with its probability."""

@@ -241,6 +241,12 @@ def surely_denies(text: str) -> bool:
     return forms.SURELY_DENIES.match(text.lower()) is not None
 
 
+def names_an_act(text: str) -> bool:
+    """Whether any of its words is an act that a command may ask for, the noun of one, or a limb: "a small wave", "left hand up"."""
+    words = text.split()
+    return bool(limbs_of(text)) or any(_is_denied_act(" ".join(words[i:])) for i in range(len(words)))
+
+
 def _is_act(what: str) -> bool:
     named = SPEAKS_OF_AN_ACT.search(what) or forms.ACTS_ALSO.search(what) or everyday(what) or is_known_phrase(what)
     return bool(named or is_gesture_verb(base_of(what.partition(" ")[0])))

@@ -128,7 +128,8 @@ SET_ASIDE = re.compile(
 )
 """'Save the bow for later', 'give the drums a rest', 'the bow can wait'."""
 SWAPPED = re.compile(
-    r"^(?:please |let us |can (?:you|we) |could (?:you|we) )*(?:swap|trade|exchange|replace)(?: out)? (?!(?:it|them|places|sides|hands|arms)\b)(?:the |your |that |all the )?(?P<what>[^,.;:]+?)(?: out)? (?:for|by|with(?! (?:(?:your |the )?(?:left|right|both|one|other|hands?)|me|us|you|him|her|them|every\w+|some\w+)\b)) (?:a bit of |some )?(?P<rest>.+)$"
+    r"^(?:please |let us |can (?:you|we) |could (?:you|we) )*(?:(?P<swap>swap|replace)|trade|exchange)(?: out)? (?!(?:it|them|places|sides|hands|arms)\b)(?:the |your |that |all the )?(?P<what>(?:(?! with )[^,.;:])+?)(?: out)? "
+    r"(?(swap)(?:for|by|with(?! (?:me|us|you|him|her|them|every\w+|some\w+)\b))|for) (?:a bit of |some )?(?P<rest>.+)$"
 )
 """'Swap the wave for a bow' is a bow."""
 ASKED_AND_DENIED = re.compile(

@@ -14,7 +14,7 @@ from mmm_core.language.count_words import count_asked, with_times
 from mmm_core.language.gesture_steps import LEFT, RIGHT, ArmGesture, GestureSteps, arm_of, plainly, with_own_arm
 from mmm_core.language.limbs import limbs_of
 from mmm_core.language.manner import manner_of
-from mmm_core.language.plain_gestures import OUTSIDE, Meant, family_of, is_gesture, is_sure_of
+from mmm_core.language.plain_gestures import OUTSIDE, SEVERAL, Meant, family_of, is_gesture, is_sure_of
 
 _LOG_SURE = math.log(0.75)
 """Log-probability from which on the parser is believed beside a denial whose act is not known.
@@ -68,7 +68,8 @@ def keeps_denials(
     """Whether steps in all likelihood have nothing that another reading of the sentence denies.
 
     Beside a denial whose act is not known ("don't swat it"), only gestures of readings with that denial are likely, unless the
-    parser, which knows of denials as well, is sure of the steps. What may be an act that is denied never is.
+    parser, which knows of denials as well, is sure of the steps. Steps that may have a denied act are refused however sure it is,
+    and so are those beside a denial of several acts ("don't wave or clap").
 
     Args:
         steps: the gestures.
@@ -79,7 +80,8 @@ def keeps_denials(
     """
     flat = [one for step in steps for one in step]
     for other in others:
-        if log_parsed < _LOG_SURE and not all(is_sure_of(acts[words]) for words in other.denied):
+        unknown = [acts[words].name for words in other.denied if not is_sure_of(acts[words])]
+        if unknown and (log_parsed < _LOG_SURE or SEVERAL in unknown):
             asked = {one.gesture for step in steps_asked(other, meant) for one in step}
             if any(one.gesture not in asked for one in flat):
                 return False

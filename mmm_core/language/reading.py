@@ -19,7 +19,7 @@ from mmm_core.language.clauses import MOST_WORDS, commands_in_turn
 from mmm_core.language.commands import MOST_AT_ONCE, PlainCommand, Reading, read_exactly
 from mmm_core.language.completed_at_once import base_of
 from mmm_core.language.corrections import corrected
-from mmm_core.language.denial import Denial, without_denial
+from mmm_core.language.denial import Denial, names_an_act, without_denial
 from mmm_core.language.ellipsis import completed, with_sides
 from mmm_core.language.limbs import SOME_ARM, limbs_of
 from mmm_core.language.manner import Manner, manner_of
@@ -31,7 +31,6 @@ from mmm_core.language.requests import everyday, greeting, restated, rewritten, 
 from mmm_core.language.run_on import with_marks
 from mmm_core.language.spelling import mended, normalised
 from mmm_core.language.stop_words import after_a_stop
-from mmm_core.language.sure_reading import begins_with_a_verb
 from mmm_core.language.word_tables import REMEMBERED
 
 _PAST = re.compile(r"^(?!(?:raised|stretched|crossed|folded|extended|red)\b (?:hand|arm|fist)s?\b)(?!\w*eed\b)\w+ed\b")
@@ -43,8 +42,10 @@ _DO_IT = re.compile(
 _NOT_AT_ALL = re.compile(r"(?:so |but |please |just )*do not(?: (?:do|try) (?:it|that|this|so))?(?: please)?\W*")
 """A request that denies an act named before it: "i know you would like to clap, but please don't"."""
 _ANYTHING = re.compile(r"(?:do )?(?:anything|a thing)(?: at all| now)?")
-"""What is denied where nothing is to be done, whatever is said beside it: "don't do anything, he is taking a picture"."""
-_BUT = re.compile(r"^(?:but|only|just) ")
+"""What is denied where nothing is to be done, and what is said beside it is a reason: "don't do anything, he takes a picture"."""
+_STATES = re.compile(
+    r"(?:(?:he|she|they|we|i|it)(?:'s|'re|'m| is| are| am)|(?:(?:the|my|our|her|his|their|a) )?\w+(?: \w+)? (?:is|are|was)) (?!to\b)"
+)
 _LIMB_OF_ALL = re.compile(
     r"(?P<limb>(?:your |the )?(?:(?:left|right|both) )?(?:arms?|hands?|head|body)): (?P<parts>.+)$"
 )
@@ -87,7 +88,7 @@ def read(text: str, *, by_rules_alone: bool = False) -> Reading:
     denial = without_denial(rewritten(bare))
     if denial.denied and not denial.rest and not denial.anything:
         return Reading(text, (), _shown(denial.denied))
-    if any(map(_ANYTHING.fullmatch, denial.denied)) and not begins_with_a_verb(_BUT.sub("", denial.rest)):
+    if any(map(_ANYTHING.fullmatch, denial.denied)) and (_STATES.match(denial.rest) or not names_an_act(denial.rest)):
         return Reading(text, (), _shown(denial.denied))
     if denial.anything and not denial.rest:
         return Reading(text, ((command_of(anything_but(denial.denied)),),), _shown(denial.denied))

@@ -66,8 +66,8 @@ def is_sure(reading: Reading) -> bool:
 def needs_tags(reading: Reading) -> bool:
     """Whether the rules are not sure, or the sentence has words that they often divide wrongly or that may say a manner.
 
-    So has one that denies something beside a command, which may be the reason: "no carrying, you'll drop it". Of 3,205 sentences by
-    five writers that they read surely, networks mend 12 such and spoil 3.
+    A sentence that denies something beside a command needs tags as well, since the command may be only a reason: "no carrying,
+    you'll drop it". Of 3,205 sentences by seven writers, networks mend 12 such that the rules read surely, and spoil 3.
     Words that may say a manner are in a command that is no phrase of the corpus, or in a comparison that was left out.
     """
     commands = [_BESIDE.sub("", command.text.lower()) for step in reading.steps for command in step]

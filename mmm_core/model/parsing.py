@@ -42,7 +42,7 @@ def log_likelihoods(parser: SentenceParser, memory: Memory, sequences: Sequence[
 
 @torch.inference_mode()
 def likeliest(parser: SentenceParser, memory: Memory, n: int) -> list[Parsed]:
-    """About the n likeliest sequences for one sentence, by beam search, the likeliest first; very unlikely ones are left out."""
+    """About the n likeliest sequences for one sentence, by beam search, the likeliest first; unlikely beginnings are given up."""
     beams, done = [Parsed((START_ID,), 0.0)], list[Parsed]()
     caches = [KeyValueCache() for _ in parser.decoder]
     for n_before in range(parser.config.longest - 1):

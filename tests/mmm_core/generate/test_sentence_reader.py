@@ -17,6 +17,7 @@ from mmm_core.language.gesture_steps import ANY_ARM, ArmGesture, GestureSteps
 from mmm_core.language.mirroring import mirror_words
 from mmm_core.language.plain_gestures import OUTSIDE
 from mmm_core.language.reading import read
+from mmm_core.language.sure_reading import needs_networks
 from tests.support.sizes import few_and_long
 
 SENTENCES = Path(__file__).parent / "divided_sentences.jsonl"
@@ -166,6 +167,7 @@ def test_the_parser_proposes_nothing_that_is_denied_or_must_be_refused(
     reader: SentenceReader, monkeypatch: pytest.MonkeyPatch, text: str, gestures: tuple[str, ...], is_proposed: bool
 ) -> None:
     steps = tuple((ArmGesture(ANY_ARM, gesture),) for gesture in gestures)
+    monkeypatch.setattr(reader._models, "_encoded", {})
     monkeypatch.setattr(Encoded, "parse", _Answers(steps))
     ways = reader.ways_to_read(text)
     assert ways is not None
@@ -173,9 +175,10 @@ def test_the_parser_proposes_nothing_that_is_denied_or_must_be_refused(
 
 
 def test_capitals_change_nothing_and_are_not_encoded_anew(reader: SentenceReader) -> None:
-    models, text = reader._models, "Nod to the King, then Wave"
+    models, text = reader._models, "Once you have Nodded to the King, give us a Wave, but no Bow"
     assert models.encode(text) is models.encode(text.lower())
     assert models.encode(text) is not models.encode("bow to the king, then wave")
+    assert needs_networks(read(text))
     assert reader.read(text).words == reader.read(text.upper()).words
 
 

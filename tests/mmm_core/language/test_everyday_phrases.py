@@ -206,6 +206,7 @@ def test_a_phrase_means_a_gesture(text: str, command: str) -> None:
         ("thank you, now nod", "bow politely; nod"), ("yes, but slowly", "nod your head (0.62 times as fast)"),
         ("raise your hand and say hello", "raise your hand and say hello"), ("cover your eyes", "cover your eyes"),
         ("gotta go, bye", "wave your right hand"), ("shoo, go away", "wave me away with your right hand"),
+        ("keep your left elbow low", "keep your left elbow low"), ("draw the bow low", "draw the bow low"),
         ("march to the kitchen", "march to the kitchen"), ("take deep breaths and bow", "take deep breaths; bow"),
     ],
 )  # fmt: skip
