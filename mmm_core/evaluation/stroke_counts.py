@@ -72,7 +72,7 @@ def _counted_channels(family: str, side: str, direction: str) -> tuple[tuple[str
 
 
 def _times_done(shown: PostureFeatures, ref: Reference) -> int | None:
-    """How often a motion leaves the rest pose for a gesture without strokes; None for standing, which never leaves it."""
+    """Count the departures from the rest pose in a motion of a gesture without strokes; None for standing, which has none."""
     done = expected = 0
     for name in ref.acting:
         signal, meant = ref.along(shown, name), ref.along(ref.shown, name)

@@ -1,7 +1,8 @@
 """A sentence as the networks above the text encoder see it: tagger, gesture classifier and parser, on one encoding.
 
-Each network runs when it is first asked about a sentence, and once. All three are given the sentence or its mirror image, whichever
-names the right first, and what they say is mirrored back, so that a mirrored sentence is understood as its mirror image.
+Each network runs at most once on a sentence, when its output is first needed. All three are given the sentence or its mirror
+image, whichever names the right first, and what they say is mirrored back, so that a mirrored sentence is understood as its mirror
+image.
 """
 
 from __future__ import annotations
@@ -49,7 +50,7 @@ class Encoded:
     Attributes:
         words: states of the sentence's words, or of those of its mirror image, which are the same but for left and right.
         is_image: whether the states are those of the mirror image.
-        networks: what is asked.
+        networks: the networks that read it.
     """
 
     words: WordStates
@@ -58,7 +59,7 @@ class Encoded:
 
     @cached_property
     def meant(self) -> Meant:
-        """What the sentence most likely asks for."""
+        """The gesture that the classifier takes the whole sentence for, with its probability, manners and denial."""
         found = Meant(*meant_by_states(self.networks.classifier, *self._classified)[0])
         return seen_in_mirror(found) if self.is_image else found
 
@@ -154,5 +155,5 @@ class Parse:
 
 
 def seen_in_mirror(meant: Meant) -> Meant:
-    """What the mirror image of a sentence means that means `meant`."""
+    """Mirror a meaning: a sentence that means `meant` has a mirror image with the returned meaning."""
     return meant._replace(name=mirror_words(meant.name))

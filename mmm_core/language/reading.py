@@ -42,10 +42,11 @@ _DO_IT = re.compile(
 _NOT_AT_ALL = re.compile(r"(?:so |but |please |just )*do not(?: (?:do|try) (?:it|that|this|so))?(?: please)?\W*")
 """A request that denies an act named before it: "i know you would like to clap, but please don't"."""
 _ANYTHING = re.compile(r"(?:do )?(?:anything|a thing)(?: at all| now)?")
-"""What is denied where nothing is to be done, and what is said beside it is a reason: "don't do anything, he takes a picture"."""
+"""A denial of everything, beside which a statement is only a reason: "don't do anything, he is taking a picture"."""
 _STATES = re.compile(
     r"(?:(?:he|she|they|we|i|it)(?:'s|'re|'m| is| are| am)|(?:(?:the|my|our|her|his|their|a) )?\w+(?: \w+)? (?:is|are|was)) (?!to\b)"
 )
+"""The beginning of a statement: "grandpa is just taking a picture"."""
 _LIMB_OF_ALL = re.compile(
     r"(?P<limb>(?:your |the )?(?:(?:left|right|both) )?(?:arms?|hands?|head|body)): (?P<parts>.+)$"
 )

@@ -70,7 +70,7 @@ class GestureClassifier(nn.Module):
         return x
 
     def scores(self, own: Tensor, mask: Tensor, parts: Tensor) -> tuple[Tensor, Tensor, Tensor]:
-        """What `forward` returns, from the states (B, W, D) of `own_states`."""
+        """Compute the scores of `forward` from the states (B, W, D) that `own_states` returns."""
         whole = _mean(own, mask)
         return self.gesture(_mean(own, parts)), self.manner(whole), self.denial(whole).squeeze(-1)
 
