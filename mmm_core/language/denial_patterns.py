@@ -129,9 +129,10 @@ SET_ASIDE = re.compile(
 """'Save the bow for later', 'give the drums a rest', 'the bow can wait'."""
 SWAPPED = re.compile(
     r"^(?:please |let us |can (?:you|we) |could (?:you|we) )*(?:(?P<swap>swap|replace)|trade|exchange)(?: out)? (?!(?:it|them|places|sides|hands|arms)\b)(?:the |your |that |all the )?(?P<what>(?:(?! with )[^,.;:])+?)(?: out)? "
-    r"(?(swap)(?:for|by|with(?! (?:me|us|you|him|her|them|every\w+|some\w+)\b))|for) (?:a bit of |some )?(?P<rest>.+)$"
+    r"(?(swap)(?:for|by|(?<!handshakes )(?<!greetings )(?<!bumps )(?<!fives )with(?! (?:me|us|you|him|her|them|every\w+|some\w+)\b)(?! (?:your|the) (?:left|right) (?:hand|arm)$))|for) "
+    r"(?:a bit of |some )?(?P<rest>.+)$"
 )
-"""'Swap the wave for a bow' is a bow."""
+"""'Swap the wave for a bow' is a bow; 'swap handshakes with the captain' is a handshake."""
 ASKED_AND_DENIED = re.compile(
     r"^(?P<what>(?!what\b)[^,.;!?]+)\?+ (?:no|nope|nah|negative|never|not today|not now|not again|wrong|hardly|forget it|no thanks|no thank you|no way)\b(?! ?\?)[,.;!: -]*(?P<rest>(?!the (?:left|right)\b).*)$"
 )
