@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+import contextlib
+import os
+import signal
 import sys
 import uuid
+from collections.abc import Generator
 from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeVar, cast
 
@@ -121,23 +125,40 @@ def _watched(request: Play, at: Connection, *, wait: bool, json: bool) -> int:
 
 
 def _interrupted(request: Play, at: Connection) -> int:
-    """Cancel a command after Ctrl-C and print the result; a second Ctrl-C ends at once and says what goes on."""
+    """Cancel a command after Ctrl-C and print the result; a second Ctrl-C ends the process at once and says what goes on."""
     from daemon.client.errors import NoAnswerError, RefusedError
 
     what = f"{request.words[:60]!r}"
-    try:
+    with _ended_at_once(f"\nmmmd: left; {what} may go on: `mmmd stop` brakes and holds, `mmmd estop` cuts torque\n"):
         sys.stderr.write(f"\nmmmd: cancelling {what}: the robot brakes and holds; Ctrl-C again leaves at once\n")
-        with at.client() as robot:
-            try:
-                robot.cancel(request.id)
-                sys.stderr.write(f"mmmd: cancelled {what}\n")
-            except RefusedError:
-                sys.stderr.write(f"mmmd: {what} had ended, or had not begun\n")
-            except NoAnswerError:
-                robot.stop()  # on `ctl`, which answers where `cmd` does not
-                sys.stderr.write("mmmd: stopped: no answer on `cmd`, so everything was stopped on `ctl`\n")
-    except NoAnswerError as error:
-        sys.stderr.write(f"mmmd: NOT CANCELLED, {what} may go on: {error}\n")
-    except KeyboardInterrupt:
-        sys.stderr.write(f"\nmmmd: left; {what} may go on: `mmmd stop` brakes and holds, `mmmd estop` cuts torque\n")
+        try:
+            with at.client() as robot:
+                try:
+                    robot.cancel(request.id)
+                    sys.stderr.write(f"mmmd: cancelled {what}\n")
+                except RefusedError:
+                    sys.stderr.write(f"mmmd: {what} had ended, or had not begun\n")
+                except NoAnswerError:
+                    robot.stop()  # on `ctl`, which answers where `cmd` does not
+                    sys.stderr.write("mmmd: stopped: no answer on `cmd`, so everything was stopped on `ctl`\n")
+        except NoAnswerError as error:
+            sys.stderr.write(f"mmmd: NOT CANCELLED, {what} may go on: {error}\n")
     return INTERRUPTED
+
+
+@contextlib.contextmanager
+def _ended_at_once(message: str) -> Generator[None]:
+    """Let Ctrl-C write a message and end the process without unwinding it.
+
+    An exception that comes while a socket is made leaves it open, and closing the others then waits for it without end.
+    """
+
+    def leave(_number: int, _frame: object) -> None:
+        os.write(sys.stderr.fileno(), message.encode())
+        os._exit(INTERRUPTED)
+
+    before = signal.signal(signal.SIGINT, leave)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before)
