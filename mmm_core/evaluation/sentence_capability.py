@@ -1,8 +1,9 @@
 """Finds the expectations of sentences that a body can meet: that of a robot, or a person's as far as the checks see them.
 
 Each command of a sentence is performed by the corpus alone (`robot_capability`). What is expected of a whole sentence (order,
-at once, denial) can be met if each of its commands can be seen, and if no command shows the sign of what is denied: someone who
-beckons also waves away, as far as the signs go.
+at once, denial) can be met if each of its commands can be seen, if no command shows the sign of what is denied (someone who
+beckons also waves away, as far as the signs go), and if two commands are in order when the corpus performs one after the other:
+someone who brushes the teeth and then drinks also drinks first, as far as the signs go.
 """
 
 from __future__ import annotations
@@ -12,7 +13,7 @@ from dataclasses import replace
 
 from mmm_core.corpus.heldout import Command, Probe, Sentence
 from mmm_core.evaluation.robot_capability import OnRobot, is_most, performances, showable
-from mmm_core.evaluation.sentences import as_probe
+from mmm_core.evaluation.sentences import as_probe, is_in_turn
 from mmm_core.recognition.signs import shows
 
 _LONGEST_HOLD_S = 5.0
@@ -43,9 +44,18 @@ def showable_expectations(
         whole = _OF_WHOLE if all(_expected(c) <= met[names[c]] for c in asked) else frozenset()
         if any(_shows_too(c, family, on_robot) for c in asked for family in s.denied):
             whole -= {"denial"}
+        if len(asked) == len(s.commands) == 2 and whole and not _in_order(s, on_robot):
+            whole -= {"order"}
         single = met[names[asked[0]]] | {"tempo", "size"} if len(asked) == 1 else frozenset()
         found[s.text] = whole | single
     return found
+
+
+def _in_order(sentence: Sentence, on_robot: OnRobot) -> bool:
+    """Whether the corpus's own performances of two commands, one after the other, are in order."""
+    first, second = (_named(command) for (command,) in sentence.commands)
+    both = performances(replace(first, then=second), on_robot)
+    return is_most(sum(is_in_turn(sentence.commands, shown) for shown in both))
 
 
 def _shows_too(command: Command, family: str, on_robot: OnRobot) -> bool:

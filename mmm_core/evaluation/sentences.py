@@ -33,7 +33,7 @@ def judge_sentence(sentence: Sentence, shown: PostureFeatures) -> dict[str, bool
     if sentence.nothing:
         return {"denial": checks.limb(shown) == ""}
     if len(sentence.commands) > 1:
-        verdict["order"] = _in_turn(sentence.commands, shown)
+        verdict["order"] = is_in_turn(sentence.commands, shown)
     for step in sentence.commands if len(sentence.commands) == 1 else ():
         if len(step) > 1:
             verdict["at_once"] = seen_at_once(step, shown)
@@ -172,7 +172,7 @@ def _shows(c: Command, shown: PostureFeatures) -> bool:
     return not c.direction or goes(replace(shown, arms=arms), c.family, c.side, c.direction)
 
 
-def _in_turn(steps: Sequence[Sequence[Command]], shown: PostureFeatures) -> bool:
+def is_in_turn(steps: Sequence[Sequence[Command]], shown: PostureFeatures) -> bool:
     """Whether the motion can be divided into the steps in order and, for two steps, at no frame at rest in reverse order.
 
     Two steps that differ by number, tempo or size alone ("clap slowly, later on fast") are not sought in reverse order.

@@ -18,6 +18,7 @@ SENTENCES = (
     Sentence("wave and nod", "at_once", ((WAVE, NOD),)),
     Sentence("do not clap, wave", "denial", ((WAVE,),), denied=("clap",)),
     Sentence("do not clap", "denial", (), denied=("clap",), nothing=True),
+    Sentence("brush your teeth, then drink", "in_turn", ((Command("brush_teeth", "arm"),), (Command("drink", "arm"),))),
     Sentence("do not wave me off, beckon", "denial", ((Command("beckon", "arm"),),), denied=("go_away",)),
 )
 
@@ -55,3 +56,7 @@ def test_a_sentence_with_one_command_that_cannot_be_seen_expects_no_order() -> N
 def test_a_sign_of_what_is_denied_expects_no_denial(of_a_person: dict[str, frozenset[str]]) -> None:
     assert "denial" in of_a_person["do not clap, wave"]
     assert "denial" not in of_a_person["do not wave me off, beckon"]
+
+
+def test_gestures_that_show_the_sign_of_each_other_expect_no_order(of_a_person: dict[str, frozenset[str]]) -> None:
+    assert "order" not in of_a_person["brush your teeth, then drink"]
