@@ -10,7 +10,7 @@ from mmm_core.corpus.families import FAMILIES
 from mmm_core.corpus.heldout import Command
 from mmm_core.corpus.plain_commands import plain_phrases
 from mmm_core.language.inflection import times
-from mmm_core.motion.drawn_circles import drawn_circle, farther_hand, width_m
+from mmm_core.motion.drawn_circles import drawn_circle, farther_hand, loop_width_m, width_m
 from mmm_core.motion.motion import Motion
 from mmm_core.motion.posture_features import posture_features
 from mmm_core.motion.repetitions import Strokes, about_mean, body_path, strokes_of
@@ -19,6 +19,8 @@ from mmm_core.recognition import checks
 
 LEAST_CHANGE = 1.15
 """Factor by which tempo or size must differ, in the right sense, from those of the plain sentence's motion."""
+_CIRCLES = frozenset({"arm_circle", "draw_circle"})
+"""Families whose size is that of the circle and not how far the hand goes from its first pose."""
 _MOVING = 0.2
 """Share of the greatest speed above which a frame counts as moving."""
 
@@ -64,7 +66,7 @@ def _size_ratio(motion: Motion, plain: Motion, command: Command) -> float:
     measures = (_stroke_range, _cycle_range_m, _circle_width_m)
     sizes = [(measure(motion, command), measure(plain, command)) for measure in measures]
     sizes += [_cycle_ranges_m(motion, plain), _circle_widths_m(motion, plain)]
-    sizes += [(measure(motion, command), measure(plain, command)) for measure in (_signal_range, _reach)]
+    sizes += [(measure(motion, command), measure(plain, command)) for measure in (_loop_width_m, _signal_range, _reach)]
     return next((a / b for a, b in sizes if a > 0 and b > 0), 1.0)
 
 
@@ -119,6 +121,11 @@ def _circle_width_m(motion: Motion, _command: Command) -> float:
     hand = farther_hand(motion.joints_m)
     found = drawn_circle(hand)
     return 0.0 if found is None else width_m(hand[found[0] : found[1] + 1])
+
+
+def _loop_width_m(motion: Motion, command: Command) -> float:
+    """Width of the path that a hand draws in a gesture of circles, however round a robot's limits leave it; else 0."""
+    return loop_width_m(farther_hand(motion.joints_m)) if command.family in _CIRCLES else 0.0
 
 
 def _signal_range(motion: Motion, command: Command) -> float:

@@ -25,18 +25,23 @@ _TRIED = 40
 
 def drawn_circle(hand_m: Array) -> tuple[int, int] | None:
     """First and last frame of the roundest large circle in a hand's path (T, 3), metres; None where it draws none."""
-    away = np.linalg.norm(hand_m - hand_m[0], axis=-1)
-    far = away > _FAR * away.max()
-    closed: list[tuple[float, int, int]] = []
-    for period in range(_SHORTEST_FRAMES, min(_LONGEST_FRAMES, len(hand_m) - 1) + 1):
-        windows = sliding_window_view(hand_m, period + 1, axis=0)
-        width = np.linalg.norm(np.ptp(windows, axis=-1), axis=-1)
-        gap = np.linalg.norm(hand_m[period:] - hand_m[:-period], axis=-1)
-        ok = sliding_window_view(far, period + 1).all(-1) & (gap < _OPEN * width)
-        closed += [(float(width[at] - gap[at]), int(at), int(at) + period) for at in np.flatnonzero(ok)]
-    largest = sorted(closed, reverse=True)[:_TRIED]
-    roundest = sorted((_unroundness(hand_m[start : end + 1]), start, end) for _, start, end in largest)
+    roundest = sorted((_unroundness(hand_m[start : end + 1]), start, end) for start, end in _closed(hand_m))
     return next(((start, end) for _, start, end in roundest if _is_circle(hand_m[start : end + 1])), None)
+
+
+def loop_width_m(hand_m: Array) -> float:
+    """Diameter of a circle as large as the largest area that a hand's path (T, 3), metres, goes round; 0 where it goes round none.
+
+    Ways there and back enclose nothing, so that the way to a circle does not count.
+    """
+    area = max((_area_m2(hand_m[start : end + 1]) for start, end in _closed(hand_m)), default=0.0)
+    return 2 * float(np.sqrt(area / np.pi))
+
+
+def _area_m2(path_m: Array) -> float:
+    """Area that a closed path (T, 3) goes round, seen from where it is largest."""
+    centred = path_m - path_m.mean(0)
+    return float(np.linalg.norm(np.cross(centred, np.roll(centred, -1, axis=0)).sum(0))) / 2
 
 
 def farther_hand(joints_m: NDArray[np.floating]) -> Array:
@@ -48,6 +53,20 @@ def farther_hand(joints_m: NDArray[np.floating]) -> Array:
 def width_m(path_m: Array) -> float:
     """Greatest extent of a path (T, 3), metres."""
     return float(_extents_m(path_m)[0])
+
+
+def _closed(hand_m: Array) -> list[tuple[int, int]]:
+    """First and last frame of the largest nearly closed paths away from where the hand began, the largest first."""
+    away = np.linalg.norm(hand_m - hand_m[0], axis=-1)
+    far = away > _FAR * away.max()
+    closed: list[tuple[float, int, int]] = []
+    for period in range(_SHORTEST_FRAMES, min(_LONGEST_FRAMES, len(hand_m) - 1) + 1):
+        windows = sliding_window_view(hand_m, period + 1, axis=0)
+        width = np.linalg.norm(np.ptp(windows, axis=-1), axis=-1)
+        gap = np.linalg.norm(hand_m[period:] - hand_m[:-period], axis=-1)
+        ok = sliding_window_view(far, period + 1).all(-1) & (gap < _OPEN * width)
+        closed += [(float(width[at] - gap[at]), int(at), int(at) + period) for at in np.flatnonzero(ok)]
+    return [(start, end) for _, start, end in sorted(closed, reverse=True)[:_TRIED]]
 
 
 def _is_circle(path_m: Array) -> bool:

@@ -172,10 +172,17 @@ def _ramp(stretch: Stretch, n_frames: int) -> Array:
     return weights
 
 
+def _tempo(motion: Motion, stretch: Stretch) -> float:
+    """The factor of speed; larger strokes for which none is asked take longer, so that servos need not accelerate harder."""
+    if stretch.tempo == 1.0 and stretch.size > 1.0 and is_cyclic(strokes_of(motion)):
+        return stretch.size**-0.5
+    return stretch.tempo
+
+
 def _times(motion: Motion, stretch: Stretch, way: tuple[int, int] | None) -> Array:
     """(n,) fractional frame numbers, from the stretch's start, at which the performed motion samples it."""
     T = len(motion.joints_m)
-    n = max(4, round(T / stretch.tempo))
+    n = max(4, round(T / _tempo(motion, stretch)))
     places = (np.arange(n) + 0.5) * T / n - 0.5
     if way is not None:
         on_way = (places > way[0]) & (places < way[1])

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from mmm_core.corpus.heldout import Command
 from mmm_core.evaluation.manner import judge_manner
-from mmm_core.motion.drawn_circles import drawn_circle, farther_hand, width_m
+from mmm_core.motion.drawn_circles import drawn_circle, farther_hand, loop_width_m, width_m
 from mmm_core.motion.performing import Stretch, motion_of, performed
 from tests.support.shipped import shipped_engine
 
@@ -51,6 +51,11 @@ def test_a_circle_is_found_with_its_width(radius_m: float, frames: int) -> None:
 )
 def test_what_is_no_circle_is_not_found(hand: np.ndarray) -> None:
     assert drawn_circle(hand) is None
+
+
+@pytest.mark.parametrize("squeeze", [1.0, 0.5, 0.0], ids=["circle", "ellipse", "line"])
+def test_a_loop_is_as_wide_as_a_circle_of_its_area(squeeze: float) -> None:
+    assert loop_width_m(_hand(0.2, 24, squeeze=squeeze)) == pytest.approx(0.4 * np.sqrt(squeeze), rel=0.1, abs=0.02)
 
 
 @pytest.mark.parametrize("factor", [1.4, 0.6])

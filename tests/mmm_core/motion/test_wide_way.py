@@ -43,6 +43,18 @@ def test_hands_go_farther_and_end_where_they_ended(text: str) -> None:
     np.testing.assert_allclose(after[0], before[0], atol=1e-4)
 
 
+@pytest.mark.parametrize(("text", "times"), [("saw wood", 1.4**0.5), ("bow", 1.0)])
+def test_large_strokes_take_longer_unless_a_tempo_is_asked_for(text: str, times: float) -> None:
+    """Sawing with long strokes at the same pace, a robot's arm was no farther out than before: it could not accelerate enough."""
+    features = features_of(text)
+    n = len(features)
+    large, _ = performed(features, [Stretch(0, n, size=1.4)])
+    small, _ = performed(features, [Stretch(0, n, size=0.6)])
+    fast, _ = performed(features, [Stretch(0, n, size=1.4, tempo=1.6)])
+    assert len(large) == pytest.approx(times * n, abs=1) and len(small) == n
+    assert len(fast) == pytest.approx(n / 1.6, abs=1)
+
+
 def test_no_hand_is_much_faster_on_its_wide_way() -> None:
     for text in ("yawn behind your hand", "put your hand over your mouth", "flex your right arm"):
         features = features_of(text)
