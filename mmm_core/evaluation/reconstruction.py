@@ -46,8 +46,16 @@ def shown(features: Features) -> PostureFeatures:
     return posture_features(motion.joints_m, motion.head_quat_wxyz, motion.forearm_twist_rad)
 
 
+class TooLongError(ValueError):
+    """What a probe asks for does not fit into a clip of the corpus."""
+
+
 def performed(probe: Probe, seed: int) -> Features:
-    """Features (T, 263) of the corpus's own performance of a probe, with as many of its strokes as there is room for in a clip."""
+    """Features (T, 263) of the corpus's own performance of a probe, with as many of its strokes as there is room for in a clip.
+
+    Raises:
+        TooLongError: there is no room for one stroke.
+    """
 
     def gesture(p: Probe) -> Gesture:
         family = FAMILIES[p.family]
@@ -67,7 +75,7 @@ def performed(probe: Probe, seed: int) -> Features:
         )  # a slow performance may exceed a clip's length
         if (clip := next((clip for clip in drawn if clip is not None), None)) is not None:
             return clip.features
-    raise AssertionError(f"{probe.text}: longer than a clip may be in each of {_MOST_DRAWS} draws of one stroke")
+    raise TooLongError(f"{probe.text}: longer than a clip may be in each of {_MOST_DRAWS} draws of one stroke")
 
 
 def tokenizer_figures(tokenizer: Tokenizer) -> dict[str, Any]:

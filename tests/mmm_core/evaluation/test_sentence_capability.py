@@ -19,6 +19,9 @@ SENTENCES = (
     Sentence("do not clap, wave", "denial", ((WAVE,),), denied=("clap",)),
     Sentence("do not clap", "denial", (), denied=("clap",), nothing=True),
     Sentence("brush your teeth, then drink", "in_turn", ((Command("brush_teeth", "arm"),), (Command("drink", "arm"),))),
+    Sentence(
+        "hold both", "in_turn", ((Command("raise", "arm", hold_s=5.0),), (Command("hands_up", "arm", hold_s=5.0),))
+    ),
     Sentence("do not wave me off, beckon", "denial", ((Command("beckon", "arm"),),), denied=("go_away",)),
 )
 
@@ -60,3 +63,7 @@ def test_a_sign_of_what_is_denied_expects_no_denial(of_a_person: dict[str, froze
 
 def test_gestures_that_show_the_sign_of_each_other_expect_no_order(of_a_person: dict[str, frozenset[str]]) -> None:
     assert "order" not in of_a_person["brush your teeth, then drink"]
+
+
+def test_what_is_too_long_for_one_clip_may_be_in_order(of_a_person: dict[str, frozenset[str]]) -> None:
+    assert "order" in of_a_person["hold both"]
