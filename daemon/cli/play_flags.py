@@ -150,12 +150,14 @@ def _interrupted(request: Play, at: Connection) -> int:
 def _ended_at_once(message: str) -> Generator[None]:
     """Let Ctrl-C write a message and end the process without unwinding it.
 
-    An exception that comes while a socket is made leaves it open, and closing the others then waits for it without end.
+    Unwinding closes the sockets, and an exception that comes while one is made may leave it open, for which closing then waits.
     """
 
     def leave(_number: int, _frame: object) -> None:
-        os.write(sys.stderr.fileno(), message.encode())
-        os._exit(INTERRUPTED)
+        try:
+            os.write(sys.stderr.fileno(), message.encode())
+        finally:
+            os._exit(INTERRUPTED)
 
     before = signal.signal(signal.SIGINT, leave)
     try:

@@ -47,7 +47,7 @@ def shown(features: Features) -> PostureFeatures:
 
 
 class TooLongError(ValueError):
-    """What a probe asks for does not fit into a clip of the corpus."""
+    """The gestures of a probe are together longer than a clip of the corpus may be."""
 
 
 def performed(probe: Probe, seed: int) -> Features:
