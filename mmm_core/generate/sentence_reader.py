@@ -38,7 +38,7 @@ from mmm_core.language.plain_gestures import (
 )
 from mmm_core.language.positions import in_said_order
 from mmm_core.language.reading import read
-from mmm_core.language.said_arm import with_said_arm
+from mmm_core.language.said_arm import with_said_arm, without_denied_arm
 from mmm_core.language.said_at_once import said_at_once, without_repeats
 from mmm_core.language.spelling import mended
 from mmm_core.language.sure_reading import is_sure, needs_networks, needs_tags, unknown_commands
@@ -87,7 +87,7 @@ class SentenceReader:
 
     def read(self, text: str) -> Reading:
         """The commands of a text."""
-        found = with_said_arm(self._read(text))
+        found = without_denied_arm(with_said_arm(self._read(text)))
         if text.startswith(EXACTLY):
             return found
         found = without_hard_phrases(text, with_pointed_numbers(found, self._models))

@@ -1,6 +1,6 @@
 """Finds the hand that a sentence of one command names anywhere: "scan the horizon with a hand above your eyes, left one".
 
-A command in plain words has lost what stands apart from its verb.
+A command in plain words has lost what stands apart from its verb. Nor is it done with the hand that the sentence denies.
 """
 
 from __future__ import annotations
@@ -10,11 +10,16 @@ from dataclasses import replace
 
 from mmm_core.language.commands import Reading
 from mmm_core.language.count_words import count_asked
+from mmm_core.language.denial import denied_side
+from mmm_core.language.ellipsis import OTHER
 from mmm_core.language.gesture_steps import ANY_ARM, arm_of
 from mmm_core.language.limbs import SOME_ARM, limbs_of
 from mmm_core.language.plain_gestures import gesture_of, plain_command
 from mmm_core.language.spelling import mended
 
+_ARM_NOUN = "(?:hand|arm|fist|palm|forearm|wrist)"
+_AN_ARM = re.compile(rf"\b(?:(?:the|your) (?:left|right)(?: one)?|(?:left|right) {_ARM_NOUN})$")
+"""A denied side that is an arm and no direction."""
 _NO_HAND = r"(?! (?:side|ear|eye|knee|hip|cheek|foot|boot|leg|away|now|here|there|time|order|amount|place|moment)\b)"
 _HANDS = tuple(
     re.compile(form)
@@ -66,6 +71,19 @@ def with_said_arm(reading: Reading) -> Reading:
     if text in ("", plain_command(gesture, times)):
         return reading
     return replace(reading, steps=((replace(command, text=text, limbs=limbs_of(text)),),), plain=False)
+
+
+def without_denied_arm(reading: Reading) -> Reading:
+    """A reading whose one command, if it names an arm that the sentence denies ("point up w/o using the left"), has the other one."""
+    sides = {side for words in reading.denied if (side := denied_side(words)) and _AN_ARM.search(words)}
+    if [len(step) for step in reading.steps] != [1] or len(sides) != 1:
+        return reading
+    (side,), (command,) = sides, reading.steps[0]
+    other = OTHER[side]
+    text = re.sub(rf"\b{side}(?= {_ARM_NOUN}\b)", other, command.text)
+    if text == command.text or re.search(rf"\b{other}\b", command.text):
+        return reading
+    return replace(reading, steps=((replace(command, text=text, limbs=limbs_of(text)),),))
 
 
 def arm_said(sentence: str) -> str:

@@ -26,7 +26,7 @@ from mmm_core.language.candidates import EVIDENCE, Ways, evidence
 from mmm_core.language.commands import PlainCommand, Reading
 from mmm_core.language.count_words import without_times
 from mmm_core.language.known_phrases import significant_words
-from mmm_core.language.plain_gestures import Meant, family_of, gestures, is_gesture, plain_command
+from mmm_core.language.plain_gestures import Meant, family_of, gesture_of, gestures, is_gesture, plain_command
 
 SETS = (
     "words_dev",
@@ -144,6 +144,8 @@ def _agrees(said: PlainCommand, label: Command, meant: Meant, judges_arms: bool)
 
 def families_of(text: str, meant: Meant) -> frozenset[str]:
     """The families of the gestures that the words of a command are: by phrases of the corpus, else by what they likely mean."""
+    if gesture := gesture_of(text):
+        return frozenset({family_of(gesture)})
     if known := _families().get(_key(without_times(text))):
         return known
     is_likely = is_gesture(meant.name) and meant.probability >= _LIKELY
@@ -161,7 +163,7 @@ def _families() -> dict[str, frozenset[str]]:
             found[_key(phrase)].add(family)
         for said in ("", "left hand", "right hand", "both hands", "alternating hands"):
             plain.setdefault(_key(plain_command(gesture, said)), frozenset({family}))
-    return {key: frozenset(families) for key, families in found.items() if key} | plain
+    return {key: families for key, families in ({k: frozenset(v) for k, v in found.items()} | plain).items() if key}
 
 
 def _phrases(family: str, direction: str) -> Iterable[str]:

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from mmm_core.language.commands import PlainCommand, Reading
 from mmm_core.language.limbs import limbs_of
 from mmm_core.language.mirroring import mirror_words
-from mmm_core.language.said_arm import arm_said, with_said_arm
+from mmm_core.language.said_arm import arm_said, with_said_arm, without_denied_arm
 
 _SAID = (
     ("put your right one up to cover your mouth", "right"),
@@ -63,3 +63,27 @@ def test_the_mirrored_sentence_names_the_other_hand(sentence: str) -> None:
 def test_a_gesture_without_hand_takes_it_and_keeps_its_number(said: str, command: str, read: str) -> None:
     reading = Reading(said, ((PlainCommand(command, limbs=limbs_of(command)),),))
     assert with_said_arm(reading).steps[0][0].text == read
+
+
+@pytest.mark.parametrize(
+    ("command", "denied", "done"),
+    [
+        ("point up with your left hand", ("the left",), "point up with your right hand"),
+        ("hold out your left fist for a bump", ("the left hand",), "hold out your right fist for a bump"),
+        ("wave with your right hand", ("the left hand",), "wave with your right hand"),
+        ("touch your left ear with your left hand", ("use your left hand",), "touch your left ear with your right hand"),
+        ("put your left hand on your right shoulder", ("the left one",), "put your left hand on your right shoulder"),
+        ("raise your left hand", ("left",), "raise your left hand"),
+        ("raise your left hand", ("your left ear",), "raise your left hand"),
+        ("raise your left hand", ("the left hand", "the right hand"), "raise your left hand"),
+    ],
+)
+def test_a_denied_arm_does_not_do_the_one_command(command: str, denied: tuple[str, ...], done: str) -> None:
+    reading = Reading("", ((PlainCommand(command, limbs=limbs_of(command)),),), denied)
+    assert without_denied_arm(reading).steps == ((PlainCommand(done, limbs=limbs_of(done)),),)
+
+
+def test_an_arm_that_one_of_several_commands_takes_stays() -> None:
+    steps = tuple((PlainCommand(said, limbs=limbs_of(said)),) for said in ("wave your left hand", "bow politely"))
+    reading = Reading("", steps, ("the left hand",))
+    assert without_denied_arm(reading) == reading

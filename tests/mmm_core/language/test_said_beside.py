@@ -52,6 +52,7 @@ from mmm_core.language.reading import read
          "make an ear trumpet with his right hand (held for 1 s)"),
         ("the left hand rests, beckon me with your right hand", "beckon me with your right hand"),
         ("stop stirring the soup and clap your hands", "clap your hands"),
+        ("for the love of god stop clapping and nod your head", "nod your head"),
         ("stop your ears with both hands", "stop your ears with both hands"),
         # and what looks like it
         ("nod with your arms up high", "nod + raise both hands up"),

@@ -26,6 +26,9 @@ NO_MEANING = Meant("several", 0.9)
         ("rap on the hatch", Meant("knock", 0.6), {"knock"}),
         ("rap on the hatch", Meant("knock", 0.3), set()),
         ("rap on the hatch", NO_MEANING, set()),
+        ("do the robot", NO_MEANING, {"robot"}),  # a plain command without any significant word
+        ("give me five with your left hand", NO_MEANING, {"high_five"}),
+        ("robot", NO_MEANING, set()),
     ],
 )
 def test_the_families_of_a_command(text: str, meant: Meant, families: set[str]) -> None:
