@@ -74,7 +74,7 @@ def with_said_arm(reading: Reading) -> Reading:
 
 
 def without_denied_arm(reading: Reading) -> Reading:
-    """A reading whose one command, if it names an arm that the sentence denies ("point up w/o using the left"), has the other one."""
+    """A reading; its one command has the other arm if it names one that the sentence denies ("point up w/o using the left")."""
     sides = {side for words in reading.denied if (side := denied_side(words)) and _AN_ARM.search(words)}
     if [len(step) for step in reading.steps] != [1] or len(sides) != 1:
         return reading
