@@ -71,7 +71,11 @@ def test_a_gesture_without_hand_takes_it_and_keeps_its_number(said: str, command
         ("point up with your left hand", ("the left",), "point up with your right hand"),
         ("hold out your left fist for a bump", ("the left hand",), "hold out your right fist for a bump"),
         ("wave with your right hand", ("the left hand",), "wave with your right hand"),
-        ("touch your left ear with your left hand", ("use your left hand",), "touch your left ear with your right hand"),
+        (
+            "touch your left ear with your left hand",
+            ("use your left hand",),
+            "touch your left ear with your right hand",
+        ),
         ("put your left hand on your right shoulder", ("the left one",), "put your left hand on your right shoulder"),
         ("raise your left hand", ("left",), "raise your left hand"),
         ("raise your left hand", ("your left ear",), "raise your left hand"),
