@@ -114,7 +114,7 @@ class Parse:
 
     def __init__(self, parser: SentenceParser, words: WordStates, is_image: bool) -> None:
         self._parser, self._first_pieces, self._is_image = parser, words.first_pieces, is_image
-        self._memory = memory_of(parser, words.states)
+        self._memory = memory_of(parser, words.embedded)
         self._logs: dict[GestureSteps, float] = {}
 
     def likeliest(self, n: int) -> list[GestureSteps]:

@@ -24,9 +24,9 @@ class Parsed(NamedTuple):
 
 
 @torch.inference_mode()
-def memory_of(parser: SentenceParser, states: Tensor) -> Memory:
-    """`SentenceParser.remember` of one sentence, given its states (W, D)."""
-    return parser.remember(states[None], torch.ones(1, len(states), dtype=torch.bool))
+def memory_of(parser: SentenceParser, embedded: Tensor) -> Memory:
+    """`SentenceParser.remember` of one sentence, given the embeddings (W, D) of its word pieces."""
+    return parser.remember(embedded[None], torch.ones(1, len(embedded), dtype=torch.bool))
 
 
 @torch.inference_mode()

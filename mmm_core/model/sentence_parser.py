@@ -1,6 +1,6 @@
 """Translates a sentence into the gestures that it asks for, step by step, each with its arm (`mmm_core.language.gesture_steps`).
 
-The lower layers are the text encoder's own; the parser adds copies of its next layers, trained further, and a small causal
+Above the text encoder's embeddings it has layers that begin as copies of the encoder's and are trained further, and a small causal
 decoder that attends to their states (arXiv 1706.03762). It both proposes what a sentence asks for and says how likely a reading is,
 and tells which number of the sentence is how often a gesture is to be done.
 """
@@ -29,15 +29,13 @@ class ParserConfig:
 
     Attributes:
         tokens: names of the tokens, START and END first.
-        n_shared: layers of the text encoder that the parser uses as they are.
-        n_own: layers of its own above them.
+        n_own: its layers above the text encoder's embeddings.
         width, n_layers, n_heads: of the decoder.
         longest: tokens of a sequence, at most, START and END included.
     """
 
     tokens: tuple[str, ...]
-    n_shared: int = 3
-    n_own: int = 3
+    n_own: int = 6
     width: int = 256
     n_layers: int = 2
     n_heads: int = 4
@@ -121,7 +119,7 @@ class Memory(NamedTuple):
 
 
 class SentenceParser(nn.Module):
-    """Parser of sentences above the lower layers of a text encoder, which is no part of its weights."""
+    """Parser of sentences above the embeddings of a text encoder, which are no part of its weights."""
 
     def __init__(self, config: ParserConfig, text: MiniLmConfig) -> None:
         super().__init__()
@@ -134,15 +132,15 @@ class SentenceParser(nn.Module):
         self.norm, self.out = nn.LayerNorm(config.width), nn.Linear(config.width, len(config.tokens))
         self.numbers = NumberPointer(text.width, config.width)
 
-    def remember(self, states: Tensor, mask: Tensor, dropout: float = 0.0) -> Memory:
+    def remember(self, embedded: Tensor, mask: Tensor, dropout: float = 0.0) -> Memory:
         """Compute the states of sentences to which the decoder attends.
 
         Args:
-            states: (B, W, D) states of word pieces after the encoder's shared layers.
+            embedded: (B, W, D) the encoder's embeddings of word pieces.
             mask: (B, W) bool, true where there is a word piece.
             dropout: share of the values that training drops after each layer.
         """
-        x = F.dropout(states, dropout, self.training)
+        x = F.dropout(embedded, dropout, self.training)
         for layer in self.layers:
             x = F.dropout(layer(x, mask[:, None, None, :]), dropout, self.training)
         memory = self.memory(x)

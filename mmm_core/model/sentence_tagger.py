@@ -63,13 +63,15 @@ class SentenceTagger(nn.Module):
 
 @dataclass(frozen=True)
 class WordStates:
-    """States of the word pieces of one sentence after the shared layers.
+    """The word pieces of one sentence as the text encoder sees them.
 
     Attributes:
-        states: (W, D).
+        embedded: (W, D) their embeddings.
+        states: (W, D) their states after the shared layers.
         first_pieces: (N,) index of each word's first piece.
     """
 
+    embedded: Tensor
     states: Tensor
     first_pieces: Tensor
 
@@ -81,7 +83,7 @@ def word_states(encoder: MiniLm, n_shared: int, sentences: Sequence[Sequence[str
     width = max(len(e.ids) for e in encoded)
     ids = torch.tensor([e.ids + [0] * (width - len(e.ids)) for e in encoded])
     mask = torch.tensor([[True] * len(e.ids) + [False] * (width - len(e.ids)) for e in encoded])
-    states = encoder.lower_states(ids, mask, n_shared)
+    embedded, states = (encoder.lower_states(ids, mask, n) for n in (0, n_shared))
     found: list[WordStates] = []
     for row, (e, words) in enumerate(zip(encoded, sentences, strict=True)):
         first: dict[int, int] = {}
@@ -90,7 +92,8 @@ def word_states(encoder: MiniLm, n_shared: int, sentences: Sequence[Sequence[str
                 first.setdefault(word, piece)
         last = len(e.ids) - 1
         index = torch.tensor([first.get(word, last) for word in range(len(words))])
-        found.append(WordStates(states[row, : len(e.ids)].clone(), index))
+        own = slice(len(e.ids))
+        found.append(WordStates(embedded[row, own].clone(), states[row, own].clone(), index))
     return found
 
 

@@ -66,7 +66,7 @@ def train_parser(
     with torch.random.fork_rng(devices=[]):
         torch.manual_seed(SEED)
         parser = SentenceParser(ParserConfig(tokens()), encoder.config)
-        copy_layers(parser.layers, encoder, parser.config.n_shared)
+        copy_layers(parser.layers, encoder, 0)
         if start:
             parser.load_state_dict(load_parser(start).state_dict())
         batches = lru_cache(maxsize=1)(partial(_batches, draw, rng))
@@ -110,12 +110,12 @@ def _loss(parser: SentenceParser, encoder: MiniLm, batch: Sequence[LabelledSente
     """Cross entropy of the tokens of a batch and of its numbers, the sum of each sentence's."""
     ids, mask = encoder.piece_ids([one.text for one in batch])
     with torch.no_grad():
-        states = encoder.lower_states(ids, mask, parser.config.n_shared)
+        embedded = encoder.lower_states(ids, mask, 0)
     sequences = [token_ids(one.steps)[: parser.config.longest] for one in batch]
     width = max(map(len, sequences))
     given = torch.tensor([[*s, *[END_ID] * (width - len(s))] for s in sequences])
     wanted = torch.tensor([[*s[1:], *[_NOT_GIVEN] * (width - len(s))] for s in sequences])
-    memory = parser.remember(states, mask, DROPOUT)
+    memory = parser.remember(embedded, mask, DROPOUT)
     decoded = parser.decoded(memory, mask, given[:, :-1], DROPOUT)
     scores = parser.out(decoded).float()
     of_tokens = F.cross_entropy(

@@ -79,8 +79,8 @@ def test_words_of_the_act_are_not_taken_for_its_manner(reader: SentenceReader, e
     [
         ("Stretch upward and when you're done let your arms fall",
          [["stretch upward"], ["lower both arms"]]),
-        ("Swing your right arm forwards and the left backwards.",
-         [["swing your right arm forwards", "swing your left arm backwards"]]),
+        ("Circle your right arm forwards and the left backwards.",
+         [["circle your right arm forwards", "circle your left arm backwards"]]),
         ("Blow a kiss, but put your hand on your heart beforehand", [["put your hand on your heart"], ["blow a kiss"]]),
         ("wave", [["wave"]]),
         ("Draw that bow, no haste at all.", [["shoot an arrow"]]),
