@@ -91,12 +91,12 @@ def train_parser(
 
 
 def _data_key(steps: int, shares: Shares, start: Path | None) -> str:
-    """Tells apart runs of other sentences, shares, gestures, steps or parsers to start from; the same in every process."""
+    """Tells apart runs of other sentences, shares, sizes, steps or parsers to start from; the same in every process."""
     sentences = [
         (one.text, one.steps, one.counts) for one in load_labelled_sentences()
     ]  # sets of manners have no fixed order
     return hashlib.sha256(
-        repr((steps, BATCH, shares, tokens(), sentences, start and file_hash(start))).encode()
+        repr((steps, BATCH, shares, ParserConfig(tokens()), sentences, start and file_hash(start))).encode()
     ).hexdigest()[:8]
 
 

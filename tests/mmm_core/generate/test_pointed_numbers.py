@@ -34,7 +34,7 @@ def _counts(reader: SentenceReader, sentence: str) -> list[int | None]:
         ("head rolls, three, gently", [3]),
         ("chop, chop, chop: that's three with the right", [3]),
         ("please tip your cap twice", [2]),
-        ("clap four times, hang on, make it six", [6]),
+        ("three claps, no, make that five, and quick about it", [5]),
         ("clap five times, no wait, six", [6]),
         ("clap twice, no, three times", [3]),
         ("two jabs with the left, three with the right, then a bow", [2, 3, None]),

@@ -154,7 +154,7 @@ def test_a_parser_of_another_text_encoder_is_refused(tmp_path: Path) -> None:
         load_parser(path)
 
 
-def test_a_file_keeps_a_weight_within_half_a_255th_of_the_range_of_its_row(tmp_path: Path) -> None:
+def test_a_file_keeps_weights_within_half_a_step_of_their_row(tmp_path: Path) -> None:
     encoder, path = load_text_encoder(), tmp_path / "parser.safetensors"
     torch.manual_seed(0)
     parser = SentenceParser(ParserConfig(tokens()), encoder.config)
