@@ -43,6 +43,7 @@ def test_an_expression_without_manner_or_words_is_named(
 
 
 @pytest.mark.long
+@pytest.mark.timeout(900)  # three minutes by itself
 def test_the_weights_of_words_are_those_that_ship(tmp_path: Path) -> None:
     n_texts, n_pieces = train_manner(tmp_path / "words.txt")
     found = dict(line.split(" => ") for line in (tmp_path / "words.txt").read_text("utf-8").splitlines()[1:])
