@@ -87,7 +87,7 @@ GO_ON = re.compile(
     r"|^(\W*(?:(?:save|keep|leave) (?:the|your|that) [^,]+? for (?:later|bedtime|another \w+|tomorrow|\w+day)|leave (?:the|that) [^,]+? to (?:me|us|him|her|them|(?:your|the|my|our) \w+)|put (?:the|your|that) [^,]+? away)),? and (?=\w)"
 )
 STOP_AND = re.compile(
-    r"((?:^\W*|[,;.] |^\W*for (?:\w+(?:'s)?|the love of \w+|crying out) (?:sake |loud )?)(?:please )?(?:stop|quit|enough (?:of|with)|no more|leave off|cut out|knock off)(?: (?:with|of))?(?: (?:that|the|your|all that|all the|all this|this))? \w+ing\b[^,]*?),? and (?!\w+ing\b|(?:left|right|up|down|back|forth|forwards?|out|round)\b|(?:your |the |both |left |right )*(?:hands?|arms?|head|fingers?|fists?|shoulders?)$)(?=\w+ \w)"
+    rf"((?:^\W*|[,;.] )(?:{_any('before')} )*(?:please )?(?:stop|quit|enough (?:of|with)|no more|leave off|cut out|knock off)(?: (?:with|of))?(?: (?:that|the|your|all that|all the|all this|this))? \w+ing\b[^,]*?),? and (?!\w+ing\b|(?:left|right|up|down|back|forth|forwards?|out|round)\b|(?:your |the |both |left |right )*(?:hands?|arms?|head|fingers?|fists?|shoulders?)$)(?=\w+ \w)"
 )
 """'Stop waving and clap your hands' asks for the second; 'stop waving and clapping' for neither."""
 SAYS_NOT_TO = re.compile(

@@ -163,7 +163,9 @@ def _families() -> dict[str, frozenset[str]]:
             found[_key(phrase)].add(family)
         for said in ("", "left hand", "right hand", "both hands", "alternating hands"):
             plain.setdefault(_key(plain_command(gesture, said)), frozenset({family}))
-    return {key: families for key, families in ({k: frozenset(v) for k, v in found.items()} | plain).items() if key}
+    families = {key: frozenset(some) for key, some in found.items()} | plain
+    families.pop("", None)
+    return families
 
 
 def _phrases(family: str, direction: str) -> Iterable[str]:
