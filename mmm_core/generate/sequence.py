@@ -81,7 +81,8 @@ def steps_of(engine: MotionModel, steps: Sequence[tuple[ReadCommand, ...]], n_fr
     Args:
         engine: predicts the lengths.
         steps: commands of the text, those of a step done at the same time.
-        n_frames: length of the whole motion, shared in proportion to the steps' own lengths; None lets the model choose.
+        n_frames: length of the whole motion, shared in proportion to the steps' own lengths. None lets the model choose: each
+            step of the shipped model is as long as it would be alone, those of others share the longest motion they learnt.
 
     Raises:
         GenerationError: `n_frames` is None and the model has no length predictor.
@@ -90,10 +91,13 @@ def steps_of(engine: MotionModel, steps: Sequence[tuple[ReadCommand, ...]], n_fr
         command = steps[0][0]
         own = engine.predicted_frames(command.states) if n_frames is None else _before_tempo(n_frames, command.manner)
         return [Step(steps[0], tokens_for_frames(own))]
-    whole = MAX_TOKENS if n_frames is None else tokens_for_frames(n_frames)
-    steps = steps[: max(1, (whole + TRANSITION_TOKENS) // (FEWEST_TOKENS + TRANSITION_TOKENS))]
     own = [tuple(tokens_for_frames(engine.predicted_frames(c.states)) for c in step) for step in steps]
     lengths = [max(several) for several in own]
+    if n_frames is None and engine.model.is_ours:
+        return [Step(step, n, several) for step, n, several in zip(steps, lengths, own, strict=True)]
+    whole = MAX_TOKENS if n_frames is None else tokens_for_frames(n_frames)
+    most = max(1, (whole + TRANSITION_TOKENS) // (FEWEST_TOKENS + TRANSITION_TOKENS))
+    steps, own, lengths = steps[:most], own[:most], lengths[:most]
     room = whole - TRANSITION_TOKENS * (len(steps) - 1)
     if len(steps) == 1 and n_frames is not None:
         lengths = [room]

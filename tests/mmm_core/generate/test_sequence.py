@@ -121,7 +121,13 @@ class TestMotion:
     def test_its_length_is_that_of_the_commands_and_what_lies_between(self, engine: Engine) -> None:
         one, two = (len(engine.generate(t).motion.tokens) for t in ("nod twice", "clap your hands"))
         both = engine.generate("nod twice, then clap your hands").motion
-        assert len(both.tokens) == min(MAX_TOKENS, one + TRANSITION_TOKENS + two)
+        assert len(both.tokens) == one + TRANSITION_TOKENS + two
+
+    def test_four_commands_take_longer_than_the_longest_motion_that_was_learnt(self, engine: Engine) -> None:
+        said = ("nod", "bow", "clap", "wave")
+        alone = [len(engine.generate(text).motion.tokens) for text in said]
+        several = engine.generate("nod, then bow, then clap, then wave").motion
+        assert len(several.tokens) == sum(alone) + 3 * TRANSITION_TOKENS > MAX_TOKENS
 
     @pytest.mark.parametrize("seconds", few_and_long([0.8, 3.33], [0.8, 2.0, 3.33, 9.8]))
     def test_the_callers_length_wins_to_the_frame(self, engine: Engine, seconds: float) -> None:
