@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from mmm_core.language.commands import Reading
 from mmm_core.language.limbs import is_gesture_verb
-from mmm_core.language.plain_gestures import OUTSIDE, SURE, Meant, family_of, is_gesture
+from mmm_core.language.plain_gestures import OUTSIDE, SURE, Meant, family_of, in_plain_words_of, is_gesture
 from mmm_core.language.said_at_once import asks_again
 from mmm_core.language.sure_reading import unknown_commands
 from mmm_core.language.word_tables import lines, pairs
@@ -66,6 +66,8 @@ _LEAST = 0.01
 _OF_A_PHRASE = math.log(0.97)
 """Logarithm of the least probability of a phrase of the corpus, and of a task that is no gesture: it is refused, not left out."""
 _NO_TAGS = -9.0
+_LOG_LIKELY = math.log(0.4)
+"""Logarithm of the least probability of a reading's gestures by the parser for them to be its own answer in all likelihood."""
 _LEAST_PARSED = -15.0
 """Logarithm of the probability of gestures that are as good as impossible."""
 
@@ -152,15 +154,27 @@ def evidence(ways: Ways) -> NDArray[np.float64]:
 def chosen(ways: Ways) -> Reading:
     """The reading of the candidate for which most speaks.
 
-    If it has one command without tempo, size and hold, this takes the manner of another candidate of one command.
+    If it has one command without tempo, size and hold, this takes the manner of another candidate of one command. Where the parser
+    finds its gestures likely, too, its commands are said in plain words: "clap your left hand over your gob" covers the mouth.
     """
-    by_score = np.argsort(-(evidence(ways) @ _weights()), kind="stable")
-    best, *others = (ways.candidates[i].reading for i in by_score)
+    first, *rest = (ways.candidates[i] for i in np.argsort(-(evidence(ways) @ _weights()), kind="stable"))
+    best, others = _in_plain_words(first, ways.meant), (one.reading for one in rest)
     if not _is_one_command(best) or not best.steps[0][0].manner.plain:
         return best
     manners = (one.steps[0][0].manner for one in others if _is_one_command(one))
     manner = next((manner for manner in manners if not manner.plain), best.steps[0][0].manner)
     return replace(best, steps=((replace(best.steps[0][0], manner=manner),),))
+
+
+def _in_plain_words(one: Candidate, meant: Mapping[str, Meant]) -> Reading:
+    unknown = frozenset(unknown_commands(one.reading))
+    if not unknown or one.log_parsed < _LOG_LIKELY:
+        return one.reading
+    steps = tuple(
+        tuple(in_plain_words_of(c, meant[c.text], least=0.0) if c.text in unknown else c for c in step)
+        for step in one.reading.steps
+    )
+    return replace(one.reading, steps=steps)
 
 
 def _is_one_command(reading: Reading) -> bool:
