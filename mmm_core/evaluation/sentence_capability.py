@@ -14,8 +14,7 @@ from dataclasses import replace
 from mmm_core.corpus.heldout import Command, Probe, Sentence
 from mmm_core.evaluation.reconstruction import TooLongError
 from mmm_core.evaluation.robot_capability import OnRobot, is_most, performances, showable
-from mmm_core.evaluation.sentences import as_probe, is_in_turn
-from mmm_core.recognition.signs import shows
+from mmm_core.evaluation.sentences import as_probe, is_in_turn, shows_as_usual
 
 _LONGEST_HOLD_S = 5.0
 """A clip of the corpus has no room for a longer hold; who can hold a pose for five seconds can hold it for longer."""
@@ -64,7 +63,7 @@ def _in_order(sentence: Sentence, on_robot: OnRobot) -> bool:
 
 def _shows_too(command: Command, family: str, on_robot: OnRobot) -> bool:
     """Whether a command's own performances show the sign of another family, too."""
-    return is_most(sum(shows(shown, family) for shown in performances(_named(command), on_robot)))
+    return is_most(sum(shows_as_usual(shown, family) for shown in performances(_named(command), on_robot)))
 
 
 def _named(command: Command, text: str = "") -> Probe:

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from mmm_core.corpus.families import FAMILIES
 from mmm_core.corpus.heldout import Command, Probe, Sentence
 from mmm_core.evaluation.manner import judge_manner, plain_sentence
 from mmm_core.evaluation.probes import MIN_PART, judge
@@ -40,9 +41,17 @@ def judge_sentence(sentence: Sentence, shown: PostureFeatures) -> dict[str, bool
         for command in step if len(step) == 1 else ():
             verdict = judge(as_probe(command), shown, with_pose=True)
     if sentence.denied or sentence.kind == "denial":
-        kept = not any(shows(shown, family) for family in sentence.denied)
+        kept = not any(shows_as_usual(shown, family) for family in sentence.denied)
         verdict["denial"] = kept and all(ok for key, ok in verdict.items() if key != "count_exact")
     return verdict
+
+
+def shows_as_usual(shown: PostureFeatures, family: str, side: str = "", direction: str = "") -> bool:
+    """Whether a motion shows a gesture with as many strokes as the corpus makes where no number is said: two, or one.
+
+    A fist that is held out goes up and down once, as a hand does that is shaken once. But nobody shakes a hand once unasked.
+    """
+    return shows(shown, family, side, direction, min(2, *FAMILIES[family].counts or (1,)))
 
 
 def seen_at_once(commands: Sequence[Command], shown: PostureFeatures) -> bool:
@@ -199,8 +208,20 @@ def is_in_turn(steps: Sequence[Sequence[Command]], shown: PostureFeatures) -> bo
     found = any(parted(forward, cuts) for cuts in combinations(moments, len(steps) - 1))
     if len(steps) == 2 and found and _signs(steps[0]) != _signs(steps[1]):
         rests = _at_rest(shown)
-        return not any(rests[t] and parted([1, 0], (t,)) for t in moments)
+        return not any(rests[t] and parted([1, 0], (t,)) and _as_usual(steps, shown, t) for t in moments)
     return found
+
+
+def _as_usual(steps: Sequence[Sequence[Command]], shown: PostureFeatures, t: int) -> bool:
+    """Whether each of two steps in reverse order, the second one up to frame t, has its usual strokes where no number is said."""
+    parts = ((steps[1], part(shown, 0, t)), (steps[0], part(shown, t, len(shown.head_yaw_deg))))
+    return all(
+        shows_as_usual(seen, c.family, c.side, c.direction)
+        for step, seen in parts
+        if len(step) == 1
+        for c in step
+        if not c.count
+    )
 
 
 def _signs(step: Sequence[Command]) -> list[Command]:

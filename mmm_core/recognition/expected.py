@@ -13,8 +13,8 @@ from mmm_core.recognition import checks
 from mmm_core.recognition.sign_tables import DIRECTED
 from mmm_core.recognition.signs import shows
 
-_TRUNK_TURNS_ALONG = "look_back"
-"""Family of the head in which the trunk turns, too."""
+_TRUNK_GOES_ALONG = ("look_back", "breathe")
+"""Families in which the trunk turns or bends, too, as far as a trunk that is moved by itself."""
 _OTHER_ARM_HELPS = ("dab", "disco", "superhero")
 """Families that name one arm and move both."""
 _BY_SIGN = frozenset(family for family, _ in DIRECTED) - {"point"}
@@ -51,7 +51,7 @@ def is_seen(s: PostureFeatures, expected: Expected, neighbours: Iterable[Expecte
 def moves(s: PostureFeatures, family: str, limb: str) -> bool:
     """Whether the limb that moves most clearly is that of the gesture."""
     found = checks.limb(s)
-    return found == limb or (family == _TRUNK_TURNS_ALONG and found == "trunk")
+    return found == limb or (family in _TRUNK_GOES_ALONG and found == "trunk")
 
 
 def acts_with(s: PostureFeatures, family: str, side: str) -> bool:

@@ -41,6 +41,7 @@ class Sign:
         fore: direction of the forearm at the first place, and the least cosine to it.
         swing: axis and least travel of the palm, metres, while the arm is away from hanging.
         held: whether the palm rests at its first place for a while.
+        rests: whether it may do so.
         bend_deg: least and greatest elbow bend at the first place.
         turn: the two axes of a circle, and its least turns; its sign is the sense from the first towards the second axis.
         other: place of the other palm.
@@ -55,6 +56,7 @@ class Sign:
     fore: tuple[Vector, float] | None = None
     swing: tuple[int, float] | None = None
     held: bool = False
+    rests: bool = True
     bend_deg: tuple[float, float] = (0.0, 180.0)
     turn: tuple[int, int, float] | None = None
     other: Box | None = None
@@ -119,6 +121,8 @@ HEAD_TRUNK: dict[str, Callable[[PostureFeatures, str], bool]] = {
 }  # fmt: skip
 
 _FACE = places.MOUTH
+_BELOW_THE_EYES: Box = (-0.07, 0.13, 0.04, 0.225, 0.03, 0.27)
+"""The mouth, without what is nearer to the eyes."""
 _TOUCHING = (0.0, 0.16)
 ONE_LEADS = (
     "superhero",
@@ -193,8 +197,8 @@ SIGNS: dict[str, Sign] = {
     "cover_eyes": Sign((near(places.EYES, 0.1),), held=True),
     "kiss": Sign((near(_FACE, 0.1), (0.05, 0.5, -0.2, 0.3, 0.35, 0.65)), None, (_FORWARD, 0.2)),
     "hush": Sign((near((0.05, 0.16, 0.16), 0.09),), held=True),
-    "cover_mouth": Sign((near(places.MOUTH, 0.1),), held=True),
-    "yawn": Sign((near(places.MOUTH, 0.12),)),
+    "cover_mouth": Sign((_BELOW_THE_EYES,), held=True),
+    "yawn": Sign((_BELOW_THE_EYES,)),
     "drink": Sign((near((0.06, 0.18, 0.18), 0.1),), held=True),
     "eat": Sign((near(places.MOUTH, 0.12), (-0.1, 0.4, -0.42, -0.12, 0.2, 0.5)), None, (_UP, 0.22)),
     "brush_teeth": Sign((near((0.05, 0.17, 0.18), 0.12),), None, (_OUT, 0.05)),
@@ -207,15 +211,15 @@ SIGNS: dict[str, Sign] = {
     "watch_time": Sign(((-0.12, 0.15, -0.25, 0.05, 0.22, 0.48),), ((-0.9, 0.3, 0.3), 0.5), held=True),
     "sternum_fist": Sign(((-0.1, 0.14, -0.28, 0.0, 0.08, 0.28), (-0.05, 0.25, -0.25, 0.0, 0.25, 0.45)), None, (_FORWARD, 0.07)),
     # sport
-    "punch": Sign(((0.0, 0.42, -0.2, 0.2, 0.44, 0.68), (0.05, 0.5, -0.4, 0.25, 0.1, 0.45)), None, None),
-    "hook": Sign(((0.0, 0.6, -0.15, 0.2, 0.2, 0.62),), ((-0.75, 0, 0.6), 0.3), (_OUT, 0.06), share=0.12),
+    "punch": Sign(((0.0, 0.42, -0.2, 0.2, 0.44, 0.68), (0.05, 0.5, -0.4, 0.25, 0.1, 0.45)), None, None, rests=False),
+    "hook": Sign(((0.0, 0.6, -0.15, 0.2, 0.2, 0.62),), ((-0.75, 0, 0.6), 0.3), (_OUT, 0.15), share=0.12),
     "uppercut": Sign(((0.0, 0.42, 0.0, 0.42, 0.2, 0.6), (0.05, 0.5, -0.5, 0.0, -0.1, 0.55)), ((0, 1, 0.4), 0.7), (_UP, 0.2), share=0.12),
     "throw": Sign(((0.2, 0.75, 0.15, 0.65, -0.5, 0.0), (-0.15, 0.5, -0.5, 0.5, 0.25, 0.68)), None, (_FORWARD, 0.4)),
     "throw_low": Sign(((0.0, 0.5, -0.25, 0.35, 0.3, 0.68), (0.1, 0.65, -0.65, -0.2, -0.65, -0.05)), None, None, share=0.1),
     "catch": Sign(((-0.12, 0.15, -0.38, -0.05, 0.12, 0.38), (-0.05, 0.4, -0.2, 0.15, 0.42, 0.68)), None),
     "archery": Sign(((-0.4, 0.5, -0.2, 0.4, -0.1, 0.55),), ((-1, 0.1, 0.3), 0.4), other=(0.3, 0.85, -0.2, 0.3, 0.05, 0.6), bend_deg=(70, 170), share=0.15),
     "sword": Sign(((0.05, 0.6, 0.25, 0.75, -0.3, 0.5), (-0.2, 0.45, -0.45, 0.0, 0.25, 0.65)), None, (_UP, 0.35)),
-    "karate_chop": Sign(((0.1, 0.6, -0.3, 0.35, 0.15, 0.62),), None, (_UP, 0.15)),
+    "karate_chop": Sign(((0.1, 0.6, -0.3, 0.35, 0.15, 0.62),), None, (_UP, 0.15), rests=False),
     "swim_crawl": Sign(((-0.1, 0.6, -0.5, 0.65, -0.5, 0.65), (-0.1, 0.5, 0.15, 0.65, -0.4, 0.6)), turn=(_UP, _FORWARD, 0.7), opposed=_FORWARD),
     "swim_back": Sign(((-0.1, 0.6, -0.5, 0.65, -0.5, 0.65), (-0.1, 0.5, 0.15, 0.65, -0.4, 0.6)), turn=(_UP, _FORWARD, -0.7), opposed=_FORWARD),
     "swim_breast": Sign(((0.25, 0.65, -0.35, 0.1, 0.1, 0.6), (-0.1, 0.18, -0.35, 0.1, 0.1, 0.6)), None, (_OUT, 0.18), together=_OUT),

@@ -61,8 +61,16 @@ def arm_of(s: PostureFeatures, side: str) -> Arm:
     return Arm(palm, fore, bend, (np.linalg.norm(palm - hanging, axis=-1) > 0.12) | (bend > 50))
 
 
-def shows(s: PostureFeatures, family: str, side: str = "", direction: str = "") -> bool:
-    """Whether the motion shows a gesture of the family: with the arm of `side`, with both, or for "" with either."""
+def shows(s: PostureFeatures, family: str, side: str = "", direction: str = "", least_strokes: int = 1) -> bool:
+    """Whether the motion shows a gesture of the family: with the arm of `side`, with both, or for "" with either.
+
+    Args:
+        s: the motion.
+        family: one of `HEAD_TRUNK`, `DIRECTED` or `SIGNS`.
+        side: "left", "right", "both", "alternating" or "".
+        direction: of the gesture, where it has one.
+        least_strokes: strokes at least, of a family whose sign has a swing. An arm that is raised and lowered makes one.
+    """
     if family == "arms_down":
         sides = (side,) if side in _OTHER else ("left", "right")
         return any(_comes_down(s, one) for one in sides) if not side else all(_comes_down(s, one) for one in sides)
@@ -70,10 +78,9 @@ def shows(s: PostureFeatures, family: str, side: str = "", direction: str = "") 
         return HEAD_TRUNK[family](s, direction)
     sign = DIRECTED.get((family, direction)) or SIGNS[family]
     if side in _OTHER:
-        return _has(s, sign, side)
-    if side in ("both", "alternating") and family not in ONE_LEADS:
-        return _has(s, sign, "left") and _has(s, sign, "right")
-    return _has(s, sign, "left") or _has(s, sign, "right")
+        return _has(s, sign, side, least_strokes)
+    of_sides = (_has(s, sign, one, least_strokes) for one in _OTHER)
+    return all(of_sides) if side in ("both", "alternating") and family not in ONE_LEADS else any(of_sides)
 
 
 def palms_meet(family: str) -> bool:
@@ -81,7 +88,7 @@ def palms_meet(family: str) -> bool:
     return family in SIGNS and SIGNS[family].apart_m[1] <= TOUCHING_M
 
 
-def _has(s: PostureFeatures, sign: Sign, side: str) -> bool:
+def _has(s: PostureFeatures, sign: Sign, side: str, least_strokes: int) -> bool:
     arm, other = arm_of(s, side), arm_of(s, _OTHER[side])
     core = _core(arm.away)
     apart = np.linalg.norm(arm.palm - other.palm * np.array([-1.0, 1, 1]), axis=-1)
@@ -100,13 +107,15 @@ def _has(s: PostureFeatures, sign: Sign, side: str) -> bool:
     there = first if sign.held or sign.fore is not None else np.any(places, axis=0)
     if there.sum() < sign.share * core.sum():
         return False
-    if sign.held and (first & _slow(arm.palm)).sum() < max(HELD_FRAMES, 0.25 * core.sum()):
-        return False
+    if sign.held or not sign.rests:
+        does_rest = (first & _slow(arm.palm)).sum() >= max(HELD_FRAMES, 0.25 * core.sum())
+        if does_rest != sign.held:
+            return False
     used = arm.palm[core]
     if sign.swing is not None:
         axis, least = sign.swing
         way = used[:, axis]
-        if _spread(way) < 0.8 * least or not (strokes(way, least) or strokes(-way, least)):
+        if _spread(way) < 0.8 * least or max(strokes(way, least), strokes(-way, least)) < least_strokes:
             return False
     if sign.turn is not None:
         turns = _turns(used[:, [sign.turn[0], sign.turn[1]]])

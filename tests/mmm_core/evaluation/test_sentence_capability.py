@@ -18,7 +18,9 @@ SENTENCES = (
     Sentence("wave and nod", "at_once", ((WAVE, NOD),)),
     Sentence("do not clap, wave", "denial", ((WAVE,),), denied=("clap",)),
     Sentence("do not clap", "denial", (), denied=("clap",), nothing=True),
-    Sentence("brush your teeth, then drink", "in_turn", ((Command("brush_teeth", "arm"),), (Command("drink", "arm"),))),
+    Sentence(
+        "touch your forehead, then salute", "in_turn", ((Command("forehead", "arm"),), (Command("salute", "arm"),))
+    ),
     Sentence(
         "hold both", "in_turn", ((Command("raise", "arm", hold_s=5.0),), (Command("hands_up", "arm", hold_s=5.0),))
     ),
@@ -62,7 +64,7 @@ def test_a_sign_of_what_is_denied_expects_no_denial(of_a_person: dict[str, froze
 
 
 def test_gestures_that_show_the_sign_of_each_other_expect_no_order(of_a_person: dict[str, frozenset[str]]) -> None:
-    assert "order" not in of_a_person["brush your teeth, then drink"]
+    assert "order" not in of_a_person["touch your forehead, then salute"]
 
 
 def test_what_is_too_long_for_one_clip_may_be_in_order(of_a_person: dict[str, frozenset[str]]) -> None:
