@@ -120,9 +120,9 @@ def fitted(given: Sequence[Labelled]) -> NDArray[np.float64]:
 
 
 def is_right(reading: Reading, sentence: Sentence, ways: Ways) -> bool:
-    """Whether a reading has the commands of a sentence's label: their families, step by step, and their arms.
+    """Whether a reading has the commands of a sentence's label: their families, step by step, their arms and their directions.
 
-    Arms are not judged where a family is asked for more than once.
+    Arms are not judged where a family is asked for more than once, nor directions in words that are no plain command.
     """
     if list(map(len, reading.steps)) != list(map(len, sentence.commands)):
         return False
@@ -139,7 +139,11 @@ def is_right(reading: Reading, sentence: Sentence, ways: Ways) -> bool:
 
 def _agrees(said: PlainCommand, label: Command, meant: Meant, judges_arms: bool) -> bool:
     has_arm = not judges_arms or label.side not in ("left", "right") or re.search(rf"\b{label.side}\b", said.text)
-    return label.family in families_of(said.text, meant) and bool(has_arm)
+    has_way = f"{label.family}/{label.direction}" not in gestures() or gesture_of(said.text) in (
+        "",
+        f"{label.family}/{label.direction}",
+    )
+    return label.family in families_of(said.text, meant) and bool(has_arm) and has_way
 
 
 def families_of(text: str, meant: Meant) -> frozenset[str]:
