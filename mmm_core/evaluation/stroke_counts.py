@@ -1,7 +1,8 @@
 """Counts the strokes of a gesture, or how often a gesture without strokes is done: turning points along the axis of its reference.
 
 How many turning points the reference performance has with one, two, ... twelve strokes tells what a number of them means, so no
-table of families is needed. `recognition.checks.count` counts some families without the corpus.
+table of families is needed; each further stroke has as many as the twelfth. `recognition.checks.count` counts some families
+without the corpus.
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ from mmm_core.motion.repetitions import peaks_beyond
 from mmm_core.recognition import checks
 
 Array = NDArray[np.floating]
-_NUMBERS = range(1, MOST + 1)
+_NUMBERS = range(1, 13)
 """Numbers of strokes of reference performances."""
 _SHOWS_AXIS = 3
 """Strokes of the reference performance that gives the axes."""
@@ -54,7 +55,9 @@ def count_strokes(shown: PostureFeatures, family: str, side: str = "", direction
     if not any(_moves(shown, ref, name) for name in names):
         return 0
     n = _turns(shown, ref, names)
-    return _NUMBERS[int(np.argmin(np.abs(np.array(turns_by_number) - n)))]
+    further = np.arange(1, MOST - len(_NUMBERS) + 1) * (turns_by_number[-1] - turns_by_number[-2])
+    of_numbers = np.concatenate([turns_by_number, turns_by_number[-1] + further])
+    return 1 + int(np.argmin(np.abs(of_numbers - n)))
 
 
 @lru_cache(maxsize=512)

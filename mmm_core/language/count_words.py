@@ -7,10 +7,13 @@ from __future__ import annotations
 
 import re
 
-MOST = 12
-"""Largest number read as a count: more strokes do not fit into a motion."""
-_WORDS = ("one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten", "eleven", "twelve")
-NUMBERS = {word: i for i, word in enumerate(_WORDS, 1)} | {str(i): i for i in range(1, MOST + 1)}
+MOST = 30
+"""Largest number read as a count; that many strokes take half a minute."""
+_WORDS = (
+    "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten", "eleven", "twelve",
+    "thirteen", "fourteen", "fifteen", "sixteen", "seventeen", "eighteen", "nineteen", "twenty",
+)  # fmt: skip
+NUMBERS = {word: i for i, word in enumerate(_WORDS, 1)} | {"thirty": 30} | {str(i): i for i in range(1, MOST + 1)}
 """Number by the word or the digits for it."""
 ADVERBS = {"once": 1, "twice": 2, "thrice": 3}
 """Adverbs that name a number of times by themselves."""
@@ -18,10 +21,11 @@ TIMES = rf"(?:(?:{'|'.join(NUMBERS)})(?: times?|x)|a single time|{'|'.join(ADVER
 """Pattern of a number of times, for tables."""
 SAID_TIMES = re.compile(rf"\b{TIMES}")
 """A number of times in a command in lower case: "three times in a row", "2x", "once"."""
-_NUMBER = rf"(?<![-.])({'|'.join(NUMBERS)})(?! (?:hundred|thousand)\b)"
+_NUMBER = rf"(?<![-.])(?<!\btwenty )({'|'.join(NUMBERS)})(?! (?:hundred|thousand|one|two|three|four|five|six|seven|eight|nine)\b)"
 _NOT_STROKES = (
     "arms?|hands?|fists?|palms?|fingers?|thumbs?|eyes?|ears?|elbows?|shoulders?|wrists?|knees?|legs?|feet|foot|heads?|sides?|"
-    "s|secs?|seconds?|minutes?|degrees?|met(?:er|re)s?|cm|inch(?:es)?|people|persons?|things?|others?|us|of|or|to|and|"
+    "s|secs?|seconds?|minutes?|degrees?|met(?:er|re)s?|cm|inch(?:es)?|people|persons?|kids?|children|guys?|girls?|boys?|men|women|ladies|guests?|fans?|"
+    "friends?|students?|pupils?|players?|kilos?|pounds?|euros?|miles?|percent|things?|others?|us|of|or|to|and|"
     "balls|oranges|plates|pins|hours?|days?|weeks?|months?|years?|beats?|heartbeats?|counts?|bars?|measures?"
 )
 OF_A_LIMB = (
@@ -58,7 +62,7 @@ _THINGS = re.compile(
 
 
 def count_asked(text: str) -> int | None:
-    """The number of strokes that a text names; None where it names none, several, or one greater than twelve."""
+    """The number of strokes that a text names; None where it names none, several, or one greater than thirty."""
     text = " ".join(text.split())
     found = {ADVERBS[m[1].lower()] for m in _ONCE.finditer(text)}
     found |= {1} if _SINGLE.search(text) else set()
@@ -92,6 +96,6 @@ def with_count(text: str, count: int) -> str | None:
     found = [*_TIMES.finditer(text), *_THINGS.finditer(text)]
     spans = sorted({m.span(1) for m in found if NUMBERS[m[1].lower()] > 1}, reverse=True)
     for start, end in spans:
-        word = str(count) if text[start:end].isdigit() else _WORDS[count - 1]
+        word = str(count) if text[start:end].isdigit() or count > len(_WORDS) else _WORDS[count - 1]
         text = text[:start] + word + text[end:]
     return text if spans and count_asked(text) == count else None

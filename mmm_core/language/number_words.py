@@ -9,12 +9,10 @@ from typing import NamedTuple
 from mmm_core.language.count_words import ADVERBS, NUMBERS, OF_A_LIMB
 from mmm_core.language.word_tables import LIMB
 
-_ABOVE = ("thirteen", "fourteen", "fifteen", "sixteen", "seventeen", "eighteen", "nineteen", "twenty")
 _TENS = {"twenty": 20, "thirty": 30, "forty": 40, "fifty": 50, "sixty": 60, "seventy": 70, "eighty": 80, "ninety": 90}
 _VALUES = (
     NUMBERS
     | ADVERBS
-    | {word: i for i, word in enumerate(_ABOVE, 13)}
     | _TENS
     | {"single": 1, "double": 2, "couple": 2, "pair": 2, "triple": 3, "trio": 3, "quadruple": 4, "dozen": 12}
 )

@@ -176,7 +176,8 @@ def _held(s: PostureFeatures, side: str) -> NDArray[np.bool_]:
 def strokes(signal: Array, least: float) -> int:
     """Number of peaks of a signal; 0 when its range is below `least`.
 
-    A peak rises from the valley before it, and falls afterwards or ends the signal, each time by a share of the range.
+    A peak rises from the valley before it, and falls afterwards or ends the signal, each time by a share of the range. One that
+    ends the signal is in the upper half of the range: a hand that is lowered slowly swings back a little.
     """
     return len(peaks(signal, least))
 
@@ -185,7 +186,9 @@ def peaks(signal: Array, least: float) -> list[int]:
     """Frames of the peaks that `strokes` counts."""
     if len(signal) < 3 or np.ptp(signal) < least:
         return []
-    return peaks_beyond(signal, max(0.6 * least, 0.22 * float(np.ptp(signal))))
+    found = peaks_beyond(signal, max(0.6 * least, 0.22 * float(np.ptp(signal))))
+    ends_low = found and found[-1] == len(signal) - 1 and signal[-1] < (signal.min() + signal.max()) / 2
+    return found[:-1] if ends_low else found
 
 
 def _aim(left: float, up: float, least: float) -> str:

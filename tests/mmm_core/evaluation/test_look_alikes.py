@@ -8,6 +8,7 @@ from mmm_core.corpus.heldout import Command, Sentence
 from mmm_core.evaluation.sentences import judge_sentence, shows_as_usual
 from mmm_core.generate.engine import Engine
 from mmm_core.motion.posture_features import PostureFeatures, posture_features
+from mmm_core.recognition.checks import count
 
 PAIRS = [
     ("hold out your right fist for a bump", "fist_bump", "shake my hand", "handshake"),
@@ -34,6 +35,10 @@ def test_a_deep_breath_may_bend_the_trunk(engine: Engine) -> None:
     assert judge_sentence(sentence, _shown(engine, "breathe deeply"))["denial"]
     assert not judge_sentence(sentence, _shown(engine, "bow"))["denial"]
     assert not judge_sentence(sentence, _shown(engine, "yawn"))["denial"]
+
+
+def test_a_slow_wave_has_as_many_strokes_as_a_plain_one(engine: Engine) -> None:
+    assert [count(_shown(engine, text), "wave") for text in ("wave twice", "wave twice, very slowly")] == [2, 2]
 
 
 def _shown(engine: Engine, text: str) -> PostureFeatures:

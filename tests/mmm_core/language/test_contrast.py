@@ -179,6 +179,8 @@ def test_order(text: str, read_as: str) -> None:
         ("clap three times slowly and twice fast", "clap three times (0.62 times as fast); clap twice (1.6 times as fast)"),
         ("punch 3 times with each hand", "punch 3 times with your right hand; punch 3 times with your left hand"),
         ("clap a dozen times", "clap twelve times"), ("clap once or twice", "clap twice"), ("nod thrice", "nod three times"),
+        ("nod twenty five times", "nod 25 times"), ("bow, not once but twice", "bow twice"),
+        ("not just one but two bows", "not just one but two bows"),
         ("wave four or five times", "wave four times"), ("give me ten claps", "give me ten claps"),
         ("bow one time", "bow once"),
         ("I want to hear five claps", "five claps"), ("super fast clapping please", "clap (1.8 times as fast)"),
