@@ -62,7 +62,7 @@ def _families() -> frozenset[str]:
 
 @cache
 def _verbs_of_strokes() -> frozenset[str]:
-    """First words of the plain commands of gestures that have strokes, but not of others, nor "do", which fits any gesture."""
+    """First words of plain commands of gestures that have strokes, but not of others; "do" and "tip" fit others, too."""
     first = {gesture: plain_command(gesture, "").split(" ", 1)[0] for gesture in gestures()}
     of_whole = {verb for gesture, verb in first.items() if is_whole(gesture)}
-    return frozenset(first.values()) - of_whole - {"do"}
+    return frozenset(first.values()) - of_whole - {"do", "tip"}

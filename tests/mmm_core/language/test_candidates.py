@@ -122,3 +122,10 @@ def test_one_command_without_manner_takes_that_of_another_candidate() -> None:
     quick = replace(quick, reading=replace(quick.reading, steps=((PlainCommand("wiggle it", Manner(tempo=1.6)),),)))
     found = chosen(Ways([best, quick], MEANT, Meant("clap", 0.8)))
     assert [command.sentence for step in found.steps for command in step] == ["clap (1.6 times as fast)"]
+
+
+@pytest.mark.parametrize(("log_parsed", "said"), [(-0.5, "wobble your head"), (-3.0, "wiggle it")])
+def test_a_choice_that_the_parser_shares_is_said_in_plain_words(log_parsed: float, said: str) -> None:
+    one = _candidate([["clap"], ["wiggle it"]], log_parsed=log_parsed)
+    found = chosen(Ways([one], MEANT, Meant(SEVERAL, 0.9)))
+    assert [step[0].text for step in found.steps] == ["clap", said]

@@ -44,7 +44,7 @@ def test_a_slip_is_mended_by_the_words_beside_it(slip: str, meant: str) -> None:
         "jump with both feet", "kick the ball with your left foot", "come down the stairs", "print the page", "sell the book",
         "recite a poem", "stomp your feet", "pack the horse", "wave at the band", "point at your land",
         "wave when the music starts", "i hate to bother you", "the person sings", "order pizzas", "walk like a crab",
-        "nod if you can hear me", "leap in the air", "leap to the left",
+        "nod if you can hear me", "leap in the air", "leap to the left", "tip your hat twice", "tip your hat to the left",
         "mow the lawn", "shave the sheep", "mend the chair", "wave your wand", "wipe your tears",
         "leah wave to us", "hugo clap your hands", "boo the referee",
         "take the heat", "do the eft tap", "lever le bras gauche",

@@ -50,6 +50,7 @@ def _read(command: str, gesture: str, probability: float) -> tuple[list[str], li
         ("pour the tea twice", "pour", "pour water from a jug 2 times"),
         ("do the dab three times", "dab", "dab 3 times"),
         ("tip your hat twice", "pull_hat", "tip your hat twice"),
+        ("tip your head sideways to the right twice", "tilt_head/right", "tilt your head to the right 2 times"),
     ],
 )
 def test_a_whole_gesture_is_said_in_plain_words_with_its_number(command: str, gesture: str, said: str) -> None:
