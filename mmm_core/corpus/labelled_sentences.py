@@ -45,13 +45,17 @@ class LabelledSentence(NamedTuple):
     counts: tuple[int | None, ...] | None = None
 
 
-def load_labelled_sentences(folder: Path = LABELLED_SENTENCES) -> list[LabelledSentence]:
-    """The sentences of the `.txt` files of a folder, in the order of the files' names, without those that are withheld from training.
+def load_labelled_sentences(folder: Path = LABELLED_SENTENCES, files: str = "*.txt") -> list[LabelledSentence]:
+    """The sentences of the files of a folder, in the order of the files' names, without those that are withheld from training.
+
+    Args:
+        folder: where the files are.
+        files: pattern of their names.
 
     Raises:
         TrainingDataError: a line has no " =>", no sentence, or names a gesture that there is not.
     """
-    read = [read_labelled(line, path) for path in sorted(folder.glob("*.txt")) for line in lines_of(path)]
+    read = [read_labelled(line, path) for path in sorted(folder.glob(files)) for line in lines_of(path)]
     return [one for one in read if not is_withheld(one.text)]
 
 

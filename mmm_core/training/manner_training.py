@@ -27,6 +27,10 @@ from mmm_core.language.manner_words import ASKED, EVIDENCE, START, evidence, pie
 from mmm_core.language.reading import read
 from mmm_core.training.choice_training import SETS
 
+LOOKED_AT = (*SETS, *(f"words_test_{n}" for n in range(1, 6)))
+"""Sets of sentences that were looked at and from which neither words, nor classifier, nor tagger have learnt."""
+_LEARNT = "[mw]*.txt"
+"""Files of labelled sentences that the words are learnt from: all but `looked_at_sets.txt`."""
 MANNER_EXPRESSIONS = MANNER_SENTENCES.with_name("manner_expressions.txt")
 """Expressions that ship, `manner => expression`, one a line; lines that begin with # are comments."""
 Texts = list[tuple[str, frozenset[str]]]
@@ -56,7 +60,9 @@ def train_manner(out: Path, seed: int = 0) -> tuple[int, int]:
     return len(texts), len(rows)
 
 
-def train_evidence(out: Path, reader: SentenceReader | None = None, sets: Sequence[str] = SETS) -> tuple[int, int, int]:
+def train_evidence(
+    out: Path, reader: SentenceReader | None = None, sets: Sequence[str] = LOOKED_AT
+) -> tuple[int, int, int]:
     """Find what words, classifier and tagger weigh, and write the table that `mmm_core/language/words/manner_choice.txt` is.
 
     They are those of a logistic regression over none and the four manners, for sentences of one command in which rules find none.
@@ -143,7 +149,7 @@ def _labelled(known: Collection[str]) -> Texts:
     """The labelled sentences but known ones, and those without a manner in which the rules find one: a label may leave it out."""
     return [
         (one.text, one.manners)
-        for one in load_labelled_sentences()
+        for one in load_labelled_sentences(files=_LEARNT)
         if one.text not in known
         and (one.manners or all(command.manner.plain for step in read(one.text).steps for command in step))
     ]

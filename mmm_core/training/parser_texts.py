@@ -39,11 +39,16 @@ _SHORTEST_GERUND = 6
 """Letters of a gerund, at least: "bring" is none."""
 
 
+_NEWEST = ("looked_at_sets.txt", "writers_74_to_89.txt")
+"""Files of labelled sentences that the shipped parser learnt last."""
+
+
 class Shares(NamedTuple):
     """Shares of the kinds of sentences that are drawn; all others are single gestures.
 
     Attributes:
         labelled: sentences of writers.
+        newest: those of `_NEWEST`, beside their part of the sentences of all writers.
         refilled: marked sentences with other gestures in the place of theirs.
         denial: sentences with a negative word.
         joined: two to four gestures, one after another.
@@ -51,6 +56,7 @@ class Shares(NamedTuple):
     """
 
     labelled: float = 0.5
+    newest: float = 0.0
     refilled: float = 0.15
     denial: float = 0.05
     joined: float = 0.07
@@ -68,6 +74,7 @@ class ParserTexts:
     def __init__(self, rng: random.Random, shares: Shares | None = None) -> None:
         self._rng, self._texts, self._shares = rng, Texts(rng), shares or Shares()
         self._labelled = load_labelled_sentences()
+        self._newest = [one for name in _NEWEST for one in load_labelled_sentences(files=name)]
         self._short = [one for one in self._labelled if _is_short(one)]
         self._patterns = [(one, places) for one in load_marked_sentences() if (places := _places(one))]
         self._denials = denial_patterns()
@@ -75,7 +82,14 @@ class ParserTexts:
     def draw(self) -> LabelledSentence:
         """A sentence with what it asks for."""
         rng = self._rng
-        kinds = (self._labelled_sentence, self.refilled, self._denial, self._joined, self._outside)
+        kinds = (
+            self._labelled_sentence,
+            self._newest_sentence,
+            self.refilled,
+            self._denial,
+            self._joined,
+            self._outside,
+        )
         drawn = rng.random()
         for kind, share in zip(kinds, self._shares, strict=True):
             if drawn < share:
@@ -85,6 +99,9 @@ class ParserTexts:
 
     def _labelled_sentence(self) -> LabelledSentence:
         return self._spoilt(self._rng.choice(self._labelled))
+
+    def _newest_sentence(self) -> LabelledSentence:
+        return self._spoilt(self._rng.choice(self._newest))
 
     def _outside(self) -> LabelledSentence:
         """A text that is no gesture."""

@@ -13,7 +13,9 @@ from mmm_core.errors import TrainingDataError
 from mmm_core.language.gesture_steps import ANY_ARM, IN_TURN, LEFT, ArmGesture
 from mmm_core.language.plain_gestures import OUTSIDE, gestures
 
-SETS = sorted(path.stem for path in LABELLED_SENTENCES.parent.glob("words_*.jsonl"))
+LEARNT = ("words_seen", *(f"words_test_{n}" for n in range(1, 6)))
+"""Sets that were looked at, which the parser learns from now (`looked_at_sets.txt`)."""
+SETS = sorted({path.stem for path in LABELLED_SENTENCES.parent.glob("words_*.jsonl")} - set(LEARNT))
 
 
 @pytest.mark.parametrize(
@@ -49,10 +51,10 @@ def test_a_line_that_cannot_be_read_is_refused(line: str) -> None:
 
 def test_all_that_ship_are_read_and_none_is_of_an_evaluation() -> None:
     given = load_labelled_sentences()
-    assert len(given) == 44_507
+    assert len(given) == 51_925
     named = {one.gesture for sentence in given for step in sentence.steps for one in step}
     assert named == {*gestures(), OUTSIDE}
-    assert len(SETS) > 8
+    assert len(SETS) == 8
     judged = {_letters(one.text) for name in SETS for one in read_sentences(name)}
     assert not judged & {_letters(one.text) for one in given}
 
