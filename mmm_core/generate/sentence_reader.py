@@ -30,6 +30,7 @@ from mmm_core.language.plain_gestures import (
     OUTSIDE,
     SURELY_DENIED,
     alternates,
+    family_of,
     in_plain_words,
     is_likely_outside,
     is_sure_of,
@@ -108,7 +109,23 @@ class SentenceReader:
         whole = states.meant
         outside = max(whole.probability if whole.name == OUTSIDE else 0.0, ways.outside if ways else 0.0)
         manners = likely_manners(words, whole.manners, _of_tags(states))
-        return replace(without_denied_acts(with_likely_manner(found, manners), whole), outside=outside)
+        found = without_denied_acts(with_likely_manner(found, manners), whole)
+        if not found.steps:
+            found = with_likely_manner(self._unless_surely_asked(found, states), manners)
+        return replace(found, outside=outside)
+
+    def _unless_surely_asked(self, nothing: Reading, states: Encoded) -> Reading:
+        """A reading without commands, or the gestures that the parser is sure of: "I said wave, not salute" asks to wave."""
+        answer = next(iter(states.parse.likeliest(1)), ())
+        if not answer or not is_all_gestures(answer) or states.parse.log_likelihoods([answer])[0] < _LOG_SURE:
+            return nothing
+        asked = reading_in(answer, nothing.text, (), {})
+        if asked is None:
+            return nothing
+        families = {family_of(one.gesture) for step in answer for one in step}
+        acts = self._models.classes(nothing.denied)
+        denied = tuple(words for words in nothing.denied if family_of(acts[words].name) not in families)
+        return replace(asked, denied=denied, plain=False)
 
     def manner_evidence(self, text: str) -> tuple[Mapping[str, float], Mapping[str, float]]:
         """The probability of each tempo and size by what a text means as a whole, and the greatest one of any of its words."""

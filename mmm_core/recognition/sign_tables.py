@@ -99,6 +99,12 @@ def _fast(yaw_deg: Array) -> bool:
     return bool(np.abs(left[:, None] - right).min() <= SHAKE_FRAMES)
 
 
+def _bends_deep_or_with_the_head(s: PostureFeatures) -> bool:
+    """Whether the trunk bends as far as only in a bow, or the head goes along as in a bow: who leans forward keeps it up."""
+    trunk, head = (pitch.max() - pitch[0] for pitch in (s.trunk_pitch_deg, s.head_pitch_deg))
+    return bool(trunk > 24 or head > 4)
+
+
 HEAD_TRUNK: dict[str, Callable[[PostureFeatures, str], bool]] = {
     "nod": lambda s, d: _head_only(s) and _span(s.head_pitch_deg) > 10 > _span(s.head_yaw_deg) and _span(s.head_roll_deg) < 10 and strokes(s.head_pitch_deg, 8.0) >= 1 and not _lasts(np.abs(s.head_pitch_deg - s.head_pitch_deg[0]), 10, 0.8),
     "shake_head": lambda s, d: _head_only(s) and s.head_yaw_deg.max() > 12 and s.head_yaw_deg.min() < -12 and _fast(s.head_yaw_deg) and _span(s.head_roll_deg) < 14,
@@ -108,7 +114,7 @@ HEAD_TRUNK: dict[str, Callable[[PostureFeatures, str], bool]] = {
     "look_back": lambda s, d: not s.arms and np.abs(s.head_yaw_deg + s.trunk_yaw_deg).max() > 65 and _span(s.head_roll_deg) < 20,
     "look_around": lambda s, d: _head_only(s) and s.head_yaw_deg.max() > 25 and s.head_yaw_deg.min() < -25 and not _fast(s.head_yaw_deg),
     "roll_head": lambda s, d: _head_only(s) and _span(s.head_pitch_deg) > 15 and s.head_roll_deg.max() > 8 and s.head_roll_deg.min() < -8,
-    "bow": lambda s, d: _trunk_only(s) and _span(s.trunk_pitch_deg) > 18 and s.trunk_pitch_deg.max() - s.trunk_pitch_deg[0] > 16 and max(_span(s.trunk_yaw_deg), _span(s.trunk_roll_deg)) < 12,
+    "bow": lambda s, d: _trunk_only(s) and _span(s.trunk_pitch_deg) > 18 and s.trunk_pitch_deg.max() - s.trunk_pitch_deg[0] > 16 and _bends_deep_or_with_the_head(s) and max(_span(s.trunk_yaw_deg), _span(s.trunk_roll_deg)) < 12,
     "lean": lambda s, d: _trunk_only(s) and max(_span(s.trunk_pitch_deg), _span(s.trunk_roll_deg)) > 5 and _span(s.trunk_yaw_deg) < 10,
     "twist": lambda s, d: _trunk_only(s) and np.abs(s.trunk_yaw_deg - s.trunk_yaw_deg[0]).max() > 12 and _span(s.trunk_roll_deg) < 12,
     "sway": lambda s, d: _trunk_only(s) and s.trunk_roll_deg.max() > 4 and s.trunk_roll_deg.min() < -4 and _span(s.trunk_pitch_deg) < 9,

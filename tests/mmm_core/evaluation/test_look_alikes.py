@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from mmm_core.corpus.families import FAMILIES
 from mmm_core.corpus.heldout import Command, Sentence
 from mmm_core.evaluation.sentences import judge_sentence, shows_as_usual
 from mmm_core.generate.engine import Engine
@@ -16,6 +17,7 @@ PAIRS = [
     ("punch with your right fist", "punch", "throw a right hook", "hook"),
     ("make a stop sign", "stop", "do a karate chop", "karate_chop"),
     ("cover your eyes with both hands", "cover_eyes", "put your hand over your mouth", "cover_mouth"),
+    ("lean forward", "lean", "bow", "bow"),
 ]
 
 
@@ -23,7 +25,7 @@ PAIRS = [
 def test_a_denied_look_alike_is_seen_where_it_is_done_alone(
     engine: Engine, text: str, family: str, denied_text: str, denied: str
 ) -> None:
-    sentence = Sentence(text, "denial", ((Command(family, "arm"),),), denied=(denied,))
+    sentence = Sentence(text, "denial", ((Command(family, FAMILIES[family].limb),),), denied=(denied,))
     assert judge_sentence(sentence, _shown(engine, text))["denial"]
     done = _shown(engine, denied_text)
     assert shows_as_usual(done, denied)

@@ -215,3 +215,22 @@ def test_a_mirrored_sentence_is_read_as_the_mirror_image(reader: SentenceReader,
         text for text, image in images[::every] if mirror_words(reader.read(text).words) != reader.read(image).words
     ]
     assert len(wrong) <= 1, wrong  # "Up top, slap my hand with your left": a rule chooses the right hand for "up top"
+
+
+@pytest.mark.parametrize(
+    ("text", "asked"),
+    [
+        ("I said wave, not salute, you daft robot.", "wave your hand"),
+        ("Knock three times, it's rude to push so don't", "knock on the door 3 times"),
+    ],
+)
+def test_what_the_parser_is_sure_of_is_not_taken_for_denied(reader: SentenceReader, text: str, asked: str) -> None:
+    assert [command.text for step in reader.read(text).steps for command in step] == [asked]
+
+
+@pytest.mark.parametrize(
+    "text", ["do not bow", "no clapping please", "don't you dare wave at him", "nobody is to salute today"]
+)
+def test_what_is_denied_alone_stays_denied(reader: SentenceReader, text: str) -> None:
+    found = reader.read(text)
+    assert not found.steps and found.denied
