@@ -55,10 +55,21 @@ _CORRECTED = re.compile(
     r"(?:[\w']+,? ){0,6}?(?P<side>left|right)(?: (?:hand|arm|one))?\b"
 )
 """A hand that takes the place of another one: "with your right hand, no, sorry, with your left"."""
+_BOTH = {
+    "arms_down": re.compile(r"\b(?:arms|hands|them|both)\b"),
+    "hands_on_hips": re.compile(r"\bhips\b"),
+    "behind_back": re.compile(r"\b(?:arms|hands) (?:[\w']+ ){0,3}(?:behind|back)\b"),
+    "behind_head": re.compile(r"\b(?:arms|hands) (?:[\w']+ ){0,3}behind\b"),
+}
+"""Words that ask for both arms, of gestures whose plain command takes one."""
+_ONE_ARM = re.compile(r"\b(?:an?|one|your|the|that|this|either) (?:hand|arm)\b")
 
 
 def with_said_arm(reading: Reading) -> Reading:
-    """A reading whose one command, a gesture without a direction, has the hand that the sentence names, if it names none itself."""
+    """A reading whose one command, a gesture without a direction, has the hand that the sentence names, if it names none itself.
+
+    It has both where the sentence speaks of several: "don't clasp them, put them on your hips".
+    """
     if [len(step) for step in reading.steps] != [1]:
         return reading
     (command,) = reading.steps[0]
@@ -66,11 +77,17 @@ def with_said_arm(reading: Reading) -> Reading:
     if not gesture or "/" in gesture or arm_of(command.text, gesture) != ANY_ARM or command.limbs - SOME_ARM:
         return reading
     side, count = arm_said(reading.text), count_asked(command.text)
+    arms = f"{side} hand" if side else "both hands" if _speaks_of_both(reading.text, gesture) else ""
     times = f" {count} times" if count else ""
-    text = plain_command(gesture, f"{side} hand{times}") if side else ""
+    text = plain_command(gesture, f"{arms}{times}") if arms else ""
     if text in ("", plain_command(gesture, times)):
         return reading
     return replace(reading, steps=((replace(command, text=text, limbs=limbs_of(text)),),), plain=False)
+
+
+def _speaks_of_both(sentence: str, gesture: str) -> bool:
+    text = mended(sentence).lower()
+    return gesture in _BOTH and _BOTH[gesture].search(text) is not None and _ONE_ARM.search(text) is None
 
 
 def without_denied_arm(reading: Reading) -> Reading:

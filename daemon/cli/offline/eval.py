@@ -39,6 +39,7 @@ def eval(
         "seen",
         "test",
         "test_singles",
+        "test_denials",
         "test_1",
         "test_2",
         "test_3",

@@ -58,6 +58,11 @@ def test_the_mirrored_sentence_names_the_other_hand(sentence: str) -> None:
         ("bow, lefty", "bow politely", "bow politely"),
         ("point up, lefty", "point your finger up", "point your finger up"),
         ("scratch that thing, lefty", "scratch that thing", "scratch that thing"),
+        ("keep your arms down, don't raise them", "lower your arm", "lower both arms"),
+        ("the arm goes down", "lower your arm", "lower your arm"),
+        ("your left hand comes down", "lower your arm", "lower your left arm"),
+        ("don't clasp them, put them on your hips", "put one hand on your hip", "put your hands on your hips"),
+        ("a hand on your hips", "put one hand on your hip", "put one hand on your hip"),
     ],
 )
 def test_a_gesture_without_hand_takes_it_and_keeps_its_number(said: str, command: str, read: str) -> None:
