@@ -3,7 +3,7 @@
 Each command of a sentence is performed by the corpus alone (`robot_capability`). What is expected of a whole sentence (order,
 at once, denial) can be met if each of its commands can be seen, if no command shows the sign of what is denied (someone who
 beckons also waves away, as far as the signs go), and if two commands are in order when the corpus performs one after the other:
-someone who brushes the teeth and then drinks also drinks first, as far as the signs go.
+someone who touches the forehead and then salutes also salutes first, as far as the signs go.
 """
 
 from __future__ import annotations

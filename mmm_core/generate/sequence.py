@@ -93,17 +93,16 @@ def steps_of(engine: MotionModel, steps: Sequence[tuple[ReadCommand, ...]], n_fr
         return [Step(steps[0], tokens_for_frames(own))]
     own = [tuple(tokens_for_frames(engine.predicted_frames(c.states)) for c in step) for step in steps]
     lengths = [max(several) for several in own]
-    if n_frames is None and engine.model.is_ours:
-        return [Step(step, n, several) for step, n, several in zip(steps, lengths, own, strict=True)]
-    whole = MAX_TOKENS if n_frames is None else tokens_for_frames(n_frames)
-    most = max(1, (whole + TRANSITION_TOKENS) // (FEWEST_TOKENS + TRANSITION_TOKENS))
-    steps, own, lengths = steps[:most], own[:most], lengths[:most]
-    room = whole - TRANSITION_TOKENS * (len(steps) - 1)
-    if len(steps) == 1 and n_frames is not None:
-        lengths = [room]
-    elif n_frames is not None or sum(lengths) > room:
-        lengths = shared_out(room, lengths)
-    return [Step(step, n, several) for step, n, several in zip(steps, lengths, own, strict=True)]
+    if n_frames is not None or not engine.model.is_ours:
+        whole = MAX_TOKENS if n_frames is None else tokens_for_frames(n_frames)
+        most = max(1, (whole + TRANSITION_TOKENS) // (FEWEST_TOKENS + TRANSITION_TOKENS))
+        lengths = lengths[:most]  # there is no room for further steps
+        room = whole - TRANSITION_TOKENS * (len(lengths) - 1)
+        if len(lengths) == 1 and n_frames is not None:
+            lengths = [room]
+        elif n_frames is not None or sum(lengths) > room:
+            lengths = shared_out(room, lengths)
+    return [Step(step, n, several) for step, n, several in zip(steps, lengths, own, strict=False)]
 
 
 def stretches_of(steps: Sequence[Step], n_tokens: Sequence[int]) -> list[Stretch]:

@@ -1,4 +1,4 @@
-"""What is denied beside a gesture that looks like it is not seen in that gesture, and is seen in its own."""
+"""The checks tell two gestures apart that look alike: a held out fist shows no handshake, and a handshake shows one."""
 
 from __future__ import annotations
 
