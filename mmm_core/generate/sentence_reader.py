@@ -15,22 +15,24 @@ import numpy as np
 
 from mmm_core.generate.encoded_sentence import Encoded
 from mmm_core.generate.pointed_numbers import with_pointed_numbers
+from mmm_core.generate.surely_parsed import LOG_SURE, as_surely_parsed
 from mmm_core.generate.word_models import WordModels
 from mmm_core.inference.onednn_linear import Packing
 from mmm_core.language.asides import without_asides
 from mmm_core.language.candidates import Candidate, Ways, chosen, commands_of, in_sentence, is_task, merged
 from mmm_core.language.commands import EXACTLY, Reading
+from mmm_core.language.contrasts import contrasted
 from mmm_core.language.denial import surely_denies
 from mmm_core.language.gesture_steps import NO_GESTURE, GestureSteps, is_all_gestures
 from mmm_core.language.hard_phrases import without_hard_phrases
 from mmm_core.language.joined import with_parted_commands
 from mmm_core.language.manner_words import likely_manners
+from mmm_core.language.meant_command import with_meant_command
 from mmm_core.language.parsed_reading import denies_itself, keeps_denials, reading_in, steps_asked
 from mmm_core.language.plain_gestures import (
     OUTSIDE,
     SURELY_DENIED,
     alternates,
-    family_of,
     in_plain_words,
     is_likely_outside,
     is_sure_of,
@@ -53,8 +55,6 @@ _DIVISIONS = 8
 """Sequences of tags that are looked at, at most."""
 _PROPOSALS = 4
 """Answers of the parser that are looked at, at most."""
-_LOG_SURE = math.log(0.85)
-"""Log-probability from which on an answer is so likely that no other one is sought; training leaves none much above 0.9."""
 _LOG_NOTHING = math.log(0.8)
 """Least log-probability that a sentence without negative words asks for nothing, as "my cat waved at me" does, to be read so."""
 _FIRST_SENTENCE = "nod, and once you have done that, wave to the people who are waiting"
@@ -98,7 +98,7 @@ class SentenceReader:
         by_rules = read(text)
         words = self._words_to_understand(by_rules, text)
         if not words:
-            return by_rules
+            return self._as_surely_parsed(by_rules) if by_rules.text == text and not by_rules.steps else by_rules
         states = self._models.encode(words)
         ways = self._ways(text, words, states)
         if ways:
@@ -110,22 +110,13 @@ class SentenceReader:
         outside = max(whole.probability if whole.name == OUTSIDE else 0.0, ways.outside if ways else 0.0)
         manners = likely_manners(words, whole.manners, _of_tags(states))
         found = without_denied_acts(with_likely_manner(found, manners), whole)
-        if not found.steps:
-            found = with_likely_manner(self._unless_surely_asked(found, states), manners)
+        found = with_likely_manner(as_surely_parsed(found, states, self._models.classes), manners)
         return replace(found, outside=outside)
 
-    def _unless_surely_asked(self, nothing: Reading, states: Encoded) -> Reading:
-        """A reading without commands, or the gestures that the parser is sure of: "I said wave, not salute" asks to wave."""
-        answer = next(iter(states.parse.likeliest(1)), ())
-        if not answer or not is_all_gestures(answer) or states.parse.log_likelihoods([answer])[0] < _LOG_SURE:
-            return nothing
-        asked = reading_in(answer, nothing.text, (), {})
-        if asked is None:
-            return nothing
-        families = {family_of(one.gesture) for step in answer for one in step}
-        acts = self._models.classes(nothing.denied)
-        denied = tuple(words for words in nothing.denied if family_of(acts[words].name) not in families)
-        return replace(asked, denied=denied, plain=False)
+    def _as_surely_parsed(self, nothing: Reading) -> Reading:
+        """What the parser is sure of instead of nothing, which the rules alone found."""
+        words = _to_encode(nothing.text)
+        return as_surely_parsed(nothing, self._models.encode(words), self._models.classes) if words else nothing
 
     def manner_evidence(self, text: str) -> tuple[Mapping[str, float], Mapping[str, float]]:
         """The probability of each tempo and size by what a text means as a whole, and the greatest one of any of its words."""
@@ -141,8 +132,7 @@ class SentenceReader:
         """The words of a text that the networks read; empty where the rules alone do."""
         if by_rules.text != text or not needs_networks(by_rules):
             return ""
-        words = _in_order(strip_emoji(text))
-        return words if 0 < len(words_of(words)) <= MAX_WORD_PIECES else ""
+        return _to_encode(text)
 
     def _ways(self, text: str, words: str, states: Encoded) -> Ways | None:
         """The ways to read the words of a text: by the rules, by tags and by the parser, also with its manner in plain words."""
@@ -190,7 +180,7 @@ class SentenceReader:
         if nothing >= _LOG_NOTHING and not may_deny(text):
             return [Candidate(Reading(text, ()), by_parser=True, log_parsed=nothing)], math.exp(outside)
         best, answer = max(zip(logs, answers, strict=True))
-        likeliest = [answer] if best >= _LOG_SURE else states.parse.likeliest(_PROPOSALS)
+        likeliest = [answer] if best >= LOG_SURE else states.parse.likeliest(_PROPOSALS)
         found = [*candidates, *self._proposed(candidates, text, states, likeliest)]
         logs = states.parse.log_likelihoods(self._answers(found))
         return merged(replace(one, log_parsed=log) for one, log in zip(found, logs, strict=True)), math.exp(outside)
@@ -257,13 +247,22 @@ class SentenceReader:
         return in_plain_words(with_likely_manner(without_asides(found, by_text), {}, by_words), whole, by_text)
 
 
+def _to_encode(text: str) -> str:
+    """The words of a text as the networks read them; empty for none, and for more than they can read."""
+    words = _in_order(strip_emoji(text))
+    return words if 0 < len(words_of(words)) <= MAX_WORD_PIECES else ""
+
+
 def _of_tags(states: Encoded) -> dict[str, float]:
     """The greatest probability of each manner among the words of a sentence."""
     return dict(zip(MANNERS, np.exp(states.manners.max(0)).tolist(), strict=True))
 
 
 def _in_order(words: str) -> str:
-    """A sentence whose clauses stand in the order in which they are to be done, which the tagger does not know to find."""
-    said = mended(words)
-    ordered = in_said_order(said)
-    return words if ordered == said else ordered
+    """A sentence whose clauses stand in the order in which they are to be done, without acts that are set aside or taken back.
+
+    The networks hardly know to find these.
+    """
+    lower, said = words.lower(), mended(words)
+    ordered = in_said_order(contrasted(said))
+    return words if ordered == said and with_meant_command(lower) == lower else ordered

@@ -43,6 +43,11 @@ def anything_but(denied: tuple[str, ...]) -> str:
     return next((command for command in _ANYTHING if command.partition(" ")[0] not in verbs), _ANYTHING[-1])
 
 
+def is_for_any_other(command: str) -> bool:
+    """Whether a command is one that a request of any other act gets."""
+    return command in _ANYTHING
+
+
 def otherwise(command: str, said: str, denied: tuple[str, ...]) -> str:
     """A command, or another gesture of the same meaning where the speaker denies the one that the meaning is usually shown with.
 

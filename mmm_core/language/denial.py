@@ -60,7 +60,7 @@ def without_denial(text: str) -> Denial:  # noqa: PLR0912  one branch for each f
         clause = part.strip(" ,")
         if not clause:
             continue
-        if (forbidden := _forbidden(clause)) and _is_denied_act(forbidden):
+        if (forbidden := _forbidden(clause)) and is_denied_act(forbidden):
             denied.append(forbidden)
             continue
         found = None if forms.NO_DENIAL.match(clause) else forms.DENIES.match(clause)
@@ -76,7 +76,7 @@ def without_denial(text: str) -> Denial:  # noqa: PLR0912  one branch for each f
                 continue
             if (
                 _is_target(what, clause, rest)
-                or _is_denied_act(what)
+                or is_denied_act(what)
                 or forms.IN_PLACE_OF.match(clause)
                 or forms.SURELY_DENIES.match(clause)
             ):
@@ -95,7 +95,7 @@ def without_denial(text: str) -> Denial:  # noqa: PLR0912  one branch for each f
             is_denied = (
                 only
                 or forms.DIRECTION_ONLY.match(what)
-                or _is_denied_act(what)
+                or is_denied_act(what)
                 or forms.ALWAYS_DENIES.match(inline["not"])
             )
             if is_denied or (inline["not"].startswith(("but ", "and ")) and forms.PLACE.match(what)):
@@ -122,8 +122,8 @@ def _of_whole_text(text: str) -> Denial | None:
     for form in forms.INSTEAD:
         if (
             (found := form.match(text))
-            and _is_denied_act(found["what"])
-            and (not found["rest"] or _is_denied_act(found["rest"]))
+            and is_denied_act(found["what"])
+            and (not found["rest"] or is_denied_act(found["rest"]))
         ):
             return Denial(found["rest"], (found["what"],))
     if nothing := forms.CANCELLED.fullmatch(text) or forms.THREATENS.fullmatch(text):
@@ -163,7 +163,7 @@ def _without_opening_denials(text: str, denied: list[str]) -> str:
     ):
         found = pattern.match(text)
         if found and (
-            pattern is forms.NOT_THAT_PART or forms.IN_PLACE_OF.match(found[0]) or _is_denied_act(found["what"])
+            pattern is forms.NOT_THAT_PART or forms.IN_PLACE_OF.match(found[0]) or is_denied_act(found["what"])
         ):
             denied.append(found["what"].strip())
             text = found["rest"] if "rest" in pattern.groupindex else text[found.end() :]
@@ -192,7 +192,7 @@ def _offered(clause: str) -> str:
     """The act of a clause that offers it instead of what is denied: "guitar" of "I said guitar"; any other clause as it is."""
     found = forms.OFFERED.match(clause)
     act = (found["act"] or found["it"]) if found else ""
-    return act if act and _is_denied_act(act) else clause
+    return act if act and is_denied_act(act) else clause
 
 
 def _is_said_again(clause: str, before: list[str]) -> bool:
@@ -244,7 +244,7 @@ def surely_denies(text: str) -> bool:
 def names_an_act(text: str) -> bool:
     """Whether any of its words is an act that a command may ask for, the noun of one, or a limb: "a small wave", "left hand up"."""
     words = text.split()
-    return bool(limbs_of(text)) or any(_is_denied_act(" ".join(words[i:])) for i in range(len(words)))
+    return bool(limbs_of(text)) or any(is_denied_act(" ".join(words[i:])) for i in range(len(words)))
 
 
 def _is_act(what: str) -> bool:
@@ -252,7 +252,7 @@ def _is_act(what: str) -> bool:
     return bool(named or is_gesture_verb(base_of(what.partition(" ")[0])))
 
 
-def _is_denied_act(what: str) -> bool:
+def is_denied_act(what: str) -> bool:
     """Whether words after a denial are an act, or the noun of one: "no guitar"."""
     return _is_act(what) or forms.NOUN_OF_AN_ACT.match(what) is not None
 

@@ -21,8 +21,13 @@ GERUND_FIRST = re.compile(
     r"^\W*(?:instead of|rather than|without) (?P<what>(?:\w+ing)(?: (?:your|the|at|to|with) \w+(?: \w+)?)?|(?:a|an) \w+),? (?=\w)"
 )
 ANYTHING_BUT = re.compile(
-    r"\b(?:anything|everything|whatever(?: \w+){0,2}) (?:but|except(?: for)?|other than|besides|apart from)\b"
+    r"\b(?:(?:any|every|some)thing(?: else)?(?: you (?:like|want))?|any(?: other)? (?:move|movement|gesture|action)|whatever(?: \w+){0,2})"
+    r" (?:but|except(?: for)?|other than|besides|apart from)\b"
 )
+SOMETHING_ELSE = re.compile(
+    r"(?:(?:please |just |rather )*(?:do|try|show (?:me|us)|give (?:me|us)) )?(?:some|any)thing (?:else|other|different)(?: instead| please)*"
+)
+"""A request of any act but a denied one, in a clause of its own."""
 IN_PLACE_OF = re.compile(r"^\W*(?:instead of|rather than|as opposed to|in place of)\b|^not .+, but\b")
 """Words of contrast, after which even what is no act is not to be done: "wave instead of just standing there"."""
 PLACE = re.compile(
@@ -118,7 +123,7 @@ FORBIDDEN = re.compile(
 )
 SET_ASIDE = re.compile(
     r"^(?:please |(?:and|but|so|then) |(?:let us|we will|we shall|you can|you may) )*(?:"
-    r"(?:save|keep|leave|spare) (?:the|your|that|those|all the) (.+?) for (?:later|another|some other|next|tomorrow|when|someone|somebody|others|the others|a rainy|bedtime|\w+day)\b(?!.* and \w).*"
+    r"(?:save|keep|leave|spare) (?:the|your|that|those|all the) (.+?) for (?:later|another(?! (?:second|minute|moment|while|bit|few|beat|count|\w+ (?:seconds?|minutes?|beats?|counts?))\b)|some other|next|tomorrow|when|someone|somebody|others|the others|a rainy|bedtime|\w+day)\b(?!.* and \w).*"
     r"|leave (?:the|that|all the|your) ((?:(?!\b(?:and|out|be|alone)\b)[^,.])+?) to (?:me|us|him|her|them|your|the|my|our|others|someone|somebody)\b.*"
     r"|put (?:the|your|that|those) (.+?) away(?: now)?"
     r"|give (?:the|your|that|all the|all that) (.+?) a (?:miss|rest|break|pass|skip)\b.*"
@@ -157,7 +162,7 @@ ANY_ARM_BUT = re.compile(
     r"(?:(?:so|as|just as) long as it is not|but|except|other than) (?:the|your) (?P<side>left|right)(?: one| hand| arm)?"
 )
 SURELY_DENIES = re.compile(
-    r"^\W*(?:\w+,? )?(?:(?:nobody|no one|none of us)(?:'s)? (?:asked|asks|wants|needs|likes)|never ever|do not you dare|under no circumstances|on no account|in no case|by no means|cancel|abort|call off|quit|"
+    r"^\W*(?:\w+,? )?(?:(?:nobody|no one|none of us)(?:'s)? (?:asked|asks|wants|needs|likes)|never ever|(?:do not|don'?t) you dare|(?:do not|don'?t|never) let (?:me|us|him|her|them|anyone|anybody) (?:see|catch|hear) you|under no circumstances|on no account|in no case|by no means|cancel|abort|call off|quit|"
     r"no (?:\w+ ){1,2}(?:tonight|today|this time|now|anymore|any more)(?=$|[,.;]))|"
     r"^\W*(?:no,? )*(?:please,? )?(?:do not|don'?t) do (?:anything|a thing)(?: at all| now)?(?=$|[,.;!])"
 )

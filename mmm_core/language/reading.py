@@ -18,8 +18,10 @@ from mmm_core.language.clause_patterns import SPEAKS_OF_AN_ACT
 from mmm_core.language.clauses import MOST_WORDS, commands_in_turn
 from mmm_core.language.commands import MOST_AT_ONCE, PlainCommand, Reading, read_exactly
 from mmm_core.language.completed_at_once import base_of
+from mmm_core.language.contrasts import contrasted
 from mmm_core.language.corrections import corrected
 from mmm_core.language.denial import Denial, names_an_act, without_denial
+from mmm_core.language.denial_patterns import SOMETHING_ELSE
 from mmm_core.language.ellipsis import completed, with_sides
 from mmm_core.language.limbs import SOME_ARM, limbs_of
 from mmm_core.language.manner import Manner, manner_of
@@ -76,7 +78,7 @@ def read(text: str, *, by_rules_alone: bool = False) -> Reading:
         return exact
     if len(text.split(None, MOST_WORDS)) > MOST_WORDS:
         return Reading(text, ((PlainCommand(text),),), plain=True)
-    said = after_a_stop(mended(text))
+    said = contrasted(after_a_stop(mended(text)))
     if known := everyday(said) or greeting(said):
         return _known(text, known)
     held = said if by_rules_alone else held_together(said)
@@ -91,7 +93,7 @@ def read(text: str, *, by_rules_alone: bool = False) -> Reading:
         return Reading(text, (), _shown(denial.denied))
     if any(map(_ANYTHING.fullmatch, denial.denied)) and (_STATES.match(denial.rest) or not names_an_act(denial.rest)):
         return Reading(text, (), _shown(denial.denied))
-    if denial.anything and not denial.rest:
+    if (denial.anything and not denial.rest) or (denial.denied and SOMETHING_ELSE.fullmatch(denial.rest)):
         return Reading(text, ((command_of(anything_but(denial.denied)),),), _shown(denial.denied))
     rest = (
         _of_denied_limb(rewritten(everyday(denial.rest) or without_request(denial.rest)), denial)

@@ -10,6 +10,7 @@ import unicodedata
 from functools import cache, lru_cache
 from itertools import pairwise
 
+from mmm_core.language.meant_command import with_meant_command
 from mmm_core.language.slips import without_slips
 from mmm_core.language.word_tables import REMEMBERED, WAY, RuleTable, pairs, replaced, substitutions
 
@@ -103,7 +104,7 @@ def _chat_word(token: str, words: dict[str, str]) -> str:
 
 def _taken_back(said: str) -> str:
     """A text without words that the speaker corrects at once: "left, I mean right" -> "right"."""
-    return replaced(said, _corrections())
+    return with_meant_command(replaced(said, _corrections()))
 
 
 @cache

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import re
 
+from mmm_core.language.alternatives import is_for_any_other
 from mmm_core.language.clause_patterns import BEGINS_WITH_A_VERB, LIMB_FIRST
 from mmm_core.language.commands import Reading
+from mmm_core.language.denial_patterns import ANYTHING_BUT, SOMETHING_ELSE
 from mmm_core.language.known_phrases import CAPTION_SUBJECT, is_known_phrase, key_of
 from mmm_core.language.limbs import is_gesture_verb, limbs_of
 
@@ -99,6 +101,18 @@ def _may_be_divided_wrongly(reading: Reading) -> bool:
     )
 
 
+def asks_for_any_other(reading: Reading) -> bool:
+    """Whether a sentence asks for any act but a denied one, so that no word of it names the act: "do anything but nod"."""
+    said = [command.text for step in reading.steps for command in step]
+    return (
+        bool(reading.denied)
+        and len(said) == 1
+        and is_for_any_other(said[0])
+        and said[0] not in reading.text.lower()
+        and (ANYTHING_BUT.search(reading.text.lower()) or SOMETHING_ELSE.search(reading.text.lower())) is not None
+    )
+
+
 def leaves_words_out(reading: Reading) -> bool:
     """Whether a sentence of one command has so many other words that some of them may say its manner."""
     said = [command.text for step in reading.steps for command in step]
@@ -107,7 +121,7 @@ def leaves_words_out(reading: Reading) -> bool:
 
 def needs_networks(reading: Reading) -> bool:
     """Whether a sentence is read with tagger, classifier and parser, not by the rules alone."""
-    return needs_tags(reading) or leaves_words_out(reading)
+    return not asks_for_any_other(reading) and (needs_tags(reading) or leaves_words_out(reading))
 
 
 def unknown_commands(reading: Reading) -> list[str]:

@@ -29,6 +29,8 @@ HELD_FRAMES = 6
 """Frames that a palm has to rest in a pose that is held."""
 TRANSITION_FRAMES = 7
 """Frames left out at both ends of a gesture, in which the arm rises and comes down."""
+LEAST_ROUNDNESS = 0.3
+"""Roundness of a path that counts as a circle, at least."""
 _HANGING_M = np.array([0.3, -0.52, 0.1])
 _OTHER = {"left": "right", "right": "left"}
 
@@ -118,8 +120,8 @@ def _has(s: PostureFeatures, sign: Sign, side: str, least_strokes: int) -> bool:
         if _spread(way) < 0.8 * least or max(strokes(way, least), strokes(-way, least)) < least_strokes:
             return False
     if sign.turn is not None:
-        turns = _turns(used[:, [sign.turn[0], sign.turn[1]]])
-        if turns * np.sign(sign.turn[2]) < abs(sign.turn[2]):
+        path = used[:, [sign.turn[0], sign.turn[1]]]
+        if _turns(path) * np.sign(sign.turn[2]) < abs(sign.turn[2]) or _roundness(path) < LEAST_ROUNDNESS:
             return False
     twist = s.twist_rad[side]
     if sign.twist_rad and twist is not None and np.ptp(twist[core]) < sign.twist_rad:
@@ -170,6 +172,12 @@ def _turns(path: Array) -> float:
     middle = (np.percentile(path, 90, axis=0) + np.percentile(path, 10, axis=0)) / 2
     around = np.unwrap(np.arctan2(*(path - middle).T[::-1]))
     return float((around[-1] - around[0]) / (2 * np.pi))
+
+
+def _roundness(path: Array) -> float:
+    """The ratio of the narrowest to the widest spread of a path (T, 2): 1 of a circle, 0 of a line."""
+    narrow, wide = np.linalg.eigvalsh(np.cov(path.T))
+    return float(np.sqrt(max(narrow, 0.0) / max(wide, 1e-9)))
 
 
 def _correlation(a: Array, b: Array) -> float:

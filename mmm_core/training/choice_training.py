@@ -33,6 +33,7 @@ SETS = (
     "words_dev_2",
     "words_dev_3",
     "words_dev_4",
+    "words_dev_5",
 )
 """Sets of sentences that were looked at and from which no network has learnt; `words_test` is none of them."""
 SETTLING = 3e-3

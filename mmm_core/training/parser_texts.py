@@ -39,8 +39,8 @@ _SHORTEST_GERUND = 6
 """Letters of a gerund, at least: "bring" is none."""
 
 
-_NEWEST = ("looked_at_sets.txt", "writers_74_to_89.txt")
-"""Files of labelled sentences that the shipped parser learnt last."""
+_NEWEST = ("writers_90_to_96.txt",)
+"""Files of labelled sentences that the shipped parser learnt last: seven writers, nine in ten of whose sentences deny something."""
 
 
 class Shares(NamedTuple):

@@ -36,6 +36,7 @@ def eval(
         "dev_2",
         "dev_3",
         "dev_4",
+        "dev_5",
         "seen",
         "test",
         "test_singles",

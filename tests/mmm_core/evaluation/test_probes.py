@@ -68,6 +68,7 @@ def test_the_test_set_shares_no_sentence_with_the_development_set() -> None:
         ("words_dev_2", 659),
         ("words_dev_3", 1904),
         ("words_dev_4", 1893),
+        ("words_dev_5", 298),
         ("words_test", 310),
         ("words_test_singles", 231),
         ("words_test_denials", 221),

@@ -82,7 +82,7 @@ def test_words_of_the_act_are_not_taken_for_its_manner(reader: SentenceReader, e
         ("Circle your right arm forwards and the left backwards.",
          [["circle your right arm forwards", "circle your left arm backwards"]]),
         ("Blow a kiss, but put your hand on your heart beforehand", [["put your hand on your heart"], ["blow a kiss"]]),
-        ("wave", [["wave"]]),
+        ("wave", [["wave"]]), ("do anything but nod", [["wave your right hand"]]),
         ("Draw that bow, no haste at all.", [["shoot an arrow"]]),
         ("Let's seal the deal with your right hand.", [["hold out your right hand for a handshake"]]),
         ("My son plays the fiddle back in Cape Breton, can you do that?", [["play the violin"]]),

@@ -16,6 +16,7 @@ from mmm_core.language.reading import read
         ("I'd like seven arm circles", 7), ("a couple of fist pumps", 2), ("clap half a dozen times", 6),
         ("clap over your head, two of them", 2), ("blow kisses for the night shift, make it three", 3),
         ("curl the dumbbell 8 reps", 8), ("knock, three times in all", 3), ("pat my back twice, not three times", 2),
+        ("pat your head five times slowly, not three", 5), ("bow once, not twice", 1), ("nod four times, never five", 4),
         ("flap your elbows, not once but twice", 2), ("a double clap", 2), ("hook, hook, hook", 3),
         # and what is none
         ("give me five", None), ("raise one arm", None), ("one more bow", None), ("clap with one hand", None),
