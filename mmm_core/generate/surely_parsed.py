@@ -66,7 +66,7 @@ def as_surely_parsed(
 
 def _is_plainly_denied(denied: str, text: str) -> bool:
     """Whether denied words follow a negative word and name an act at once: "bow", "wave at me", but not "be shy blow me a kiss"."""
-    first, *more = denied.split()
+    first = denied.partition(" ")[0]
     negative = _NEGATIVE.search(text)
     follows = negative is not None and text.find(denied) > negative.start()
-    return follows and (is_gesture_verb(base_of(first)) or (len(more) < _FEW and is_denied_act(denied)))
+    return follows and (is_gesture_verb(base_of(first)) or (denied.count(" ") < _FEW and is_denied_act(denied)))
