@@ -114,7 +114,7 @@ class SentenceReader:
         return replace(found, outside=outside)
 
     def _as_surely_parsed(self, nothing: Reading) -> Reading:
-        """What the parser is sure of instead of nothing, which the rules alone found."""
+        """A reading without commands, by the rules alone, or the parser's answer if it is sure of another one."""
         words = _to_encode(nothing.text)
         return as_surely_parsed(nothing, self._models.encode(words), self._models.classes) if words else nothing
 

@@ -1,4 +1,4 @@
-"""What the parser is sure of outweighs what rules and tags found in a sentence."""
+"""Replaces a reading by the parser's answer where the parser gives that answer a high probability."""
 
 from __future__ import annotations
 

@@ -7,9 +7,8 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 from mmm_core.language.commands import Reading
-from mmm_core.language.limbs import limbs_of
+from mmm_core.language.limbs import begins_with_a_verb, limbs_of
 from mmm_core.language.plain_gestures import Meant, is_gesture, is_surely_outside
-from mmm_core.language.sure_reading import begins_with_a_verb
 
 _MAY_BE_A_GESTURE = 0.5
 """Probability of a gesture from which a statement is a command."""

@@ -8,6 +8,7 @@ from __future__ import annotations
 import re
 from functools import cache, partial
 
+from mmm_core.language.clause_patterns import BEGINS_WITH_A_VERB
 from mmm_core.language.word_tables import LIMB, any_of, pairs, phrases
 
 ARMS = frozenset({"left_arm", "right_arm"})
@@ -81,6 +82,11 @@ def _limb_of_words(clause: str) -> frozenset[str]:
 def is_gesture_verb(word: str) -> bool:
     """Whether phrases of the corpus begin with this word and the word decides their limb: "shovel", "knit"."""
     return word in _limb_words()["verbs"]
+
+
+def begins_with_a_verb(words: str) -> bool:
+    """Whether words in lower case begin as a command does."""
+    return BEGINS_WITH_A_VERB.match(words) is not None or is_gesture_verb(words.partition(" ")[0])
 
 
 @cache

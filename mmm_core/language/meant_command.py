@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import re
 
-from mmm_core.language.clause_patterns import BEGINS_WITH_A_VERB
-from mmm_core.language.limbs import is_gesture_verb
+from mmm_core.language.limbs import begins_with_a_verb
 
 _I_MEAN = re.compile(
     r"(?:^|(?<=[,.;] ))(?P<before>[^,.;!?]{2,60})[,.;!]* (?:(?:no|sorry|wait|oops|erm?),? )*"
@@ -26,8 +25,4 @@ def with_meant_command(said: str) -> str:
 
 def _meant(found: re.Match[str]) -> str:
     before = found["before"].removeprefix("then ").removeprefix("and ")
-    return found["now"] if _is_command(before) and _is_command(found["now"]) else found[0]
-
-
-def _is_command(words: str) -> bool:
-    return BEGINS_WITH_A_VERB.match(words) is not None or is_gesture_verb(words.partition(" ")[0])
+    return found["now"] if begins_with_a_verb(before) and begins_with_a_verb(found["now"]) else found[0]

@@ -5,11 +5,11 @@ from __future__ import annotations
 import re
 
 from mmm_core.language.alternatives import is_for_any_other
-from mmm_core.language.clause_patterns import BEGINS_WITH_A_VERB, LIMB_FIRST
+from mmm_core.language.clause_patterns import LIMB_FIRST
 from mmm_core.language.commands import Reading
 from mmm_core.language.denial_patterns import ANYTHING_BUT, SOMETHING_ELSE
 from mmm_core.language.known_phrases import CAPTION_SUBJECT, is_known_phrase, key_of
-from mmm_core.language.limbs import is_gesture_verb, limbs_of
+from mmm_core.language.limbs import begins_with_a_verb, is_gesture_verb, limbs_of
 
 _JOINS = re.compile(
     r"[,;:.]|\b(?:and|then|while|but|before|after|once (?:you|the|they|it|he|she|i|we|that)|when|as|so|that|if|because|for)\b"
@@ -101,16 +101,12 @@ def _may_be_divided_wrongly(reading: Reading) -> bool:
     )
 
 
-def asks_for_any_other(reading: Reading) -> bool:
+def _asks_for_any_other(reading: Reading) -> bool:
     """Whether a sentence asks for any act but a denied one, so that no word of it names the act: "do anything but nod"."""
+    text = reading.text.lower()
     said = [command.text for step in reading.steps for command in step]
-    return (
-        bool(reading.denied)
-        and len(said) == 1
-        and is_for_any_other(said[0])
-        and said[0] not in reading.text.lower()
-        and (ANYTHING_BUT.search(reading.text.lower()) or SOMETHING_ELSE.search(reading.text.lower())) is not None
-    )
+    is_chosen_freely = len(said) == 1 and is_for_any_other(said[0]) and said[0] not in text
+    return bool(reading.denied) and is_chosen_freely and any(p.search(text) for p in (ANYTHING_BUT, SOMETHING_ELSE))
 
 
 def leaves_words_out(reading: Reading) -> bool:
@@ -121,7 +117,7 @@ def leaves_words_out(reading: Reading) -> bool:
 
 def needs_networks(reading: Reading) -> bool:
     """Whether a sentence is read with tagger, classifier and parser, not by the rules alone."""
-    return not asks_for_any_other(reading) and (needs_tags(reading) or leaves_words_out(reading))
+    return not _asks_for_any_other(reading) and (needs_tags(reading) or leaves_words_out(reading))
 
 
 def unknown_commands(reading: Reading) -> list[str]:
@@ -140,8 +136,3 @@ def _is_simple(command: str) -> bool:
         return False
     begins = begins_with_a_verb(command) or LIMB_FIRST.match(command) is not None
     return begins or (_NOUN_FIRST.match(command) is not None and bool(limbs_of(command)))
-
-
-def begins_with_a_verb(words: str) -> bool:
-    """Whether words in lower case begin as a command does."""
-    return BEGINS_WITH_A_VERB.match(words) is not None or is_gesture_verb(words.partition(" ")[0])

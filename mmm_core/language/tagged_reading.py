@@ -16,6 +16,7 @@ from mmm_core.language.commands import MOST_AT_ONCE, MOST_STEPS, PlainCommand, R
 from mmm_core.language.completed_at_once import beside_each_other
 from mmm_core.language.denial import denied_side, with_other_side
 from mmm_core.language.ellipsis import OTHER, completed
+from mmm_core.language.limbs import begins_with_a_verb
 from mmm_core.language.one_arm import of_one_arm
 from mmm_core.language.plain_gestures import (
     Meant,
@@ -25,7 +26,6 @@ from mmm_core.language.plain_gestures import (
 from mmm_core.language.reading import command_of, read
 from mmm_core.language.requests import without_request
 from mmm_core.language.spelling import mended
-from mmm_core.language.sure_reading import begins_with_a_verb
 from mmm_core.language.tagged_words import BEFORE, BEGINS, INSIDE, THEN, WITH, MarkedCommands, words_of
 
 _AND = re.compile(r"\band\b ?")

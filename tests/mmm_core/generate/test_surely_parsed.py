@@ -1,4 +1,4 @@
-"""What the parser is sure of outweighs another reading, but no task that must be refused."""
+"""A likely answer of the parser replaces another reading, unless that has a task that must be refused."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class _Parse:
 
 
 def _classes(commands: Sequence[str]) -> dict[str, Meant]:
-    """What words mean by their first one."""
+    """The gesture that the first word of each command names."""
     return {text: Meant(gesture_of(text.split()[0]) or OUTSIDE, 1.0) for text in commands}
 
 
