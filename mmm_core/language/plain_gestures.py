@@ -34,11 +34,13 @@ _WITH_SIDE = re.compile(
 )
 """A hand that is named without a noun: "two jabs with the left"."""
 _ADDS = re.compile(
-    r"\b(?:each|half ?way|all the way|"
-    r"(?:shoulder|waist|hip|chest|head|knee|eye)s?[- ](?:height|high|level)|"
-    r"overhead|above|below|beneath|higher|lower than|(?:as|up) high|low down|down low)\b"
+    r"\b(?:each(?! (?:other|time))|half ?way|all the way(?! a?round)|(?:shoulder|waist|hip|chest|head|knee|eye)s?[- ](?:height|high|level)|"
+    r"below|beneath|higher|lower than|low down|down low)\b"
 )
 """Words for which a plain command has no place: heights, and numbers for each arm."""
+_ADDS_OR_HIGH = re.compile(rf"{_ADDS.pattern}|\b(?:overhead|above|(?:as|up) high)\b")
+_IS_HIGH = re.compile(r"\b(?:(?:above|over) your head|(?:look|hold|hands|finger|arms) up)\b")
+"""Words of the plain commands of gestures that are high anyway: "make a heart above your head"."""
 IN_TURN = re.compile(
     r"\b(?:with alternating (?:hands|arms|fists)|alternat\w*|in turns?|by turns|one after the other)\b"
 )
@@ -91,9 +93,9 @@ def plain_command(gesture: str, said: str) -> str:
         said: a command, in any words.
     """
     said = said.lower()
-    if _ADDS.search(said):
-        return ""
     any_arm, one_arm, both_arms, in_turn = _plain()[gesture]
+    if (_ADDS if _IS_HIGH.search(any_arm) else _ADDS_OR_HIGH).search(said):
+        return ""
     limbs = limbs_of(said)
     side = _SIDES.get(limbs, "")
     if (
