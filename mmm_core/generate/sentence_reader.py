@@ -43,6 +43,7 @@ from mmm_core.language.positions import in_said_order
 from mmm_core.language.reading import read
 from mmm_core.language.said_arm import with_said_arm, without_denied_arm
 from mmm_core.language.said_at_once import said_at_once, without_repeats
+from mmm_core.language.sides_said import contradicts_sides
 from mmm_core.language.spelling import mended
 from mmm_core.language.sure_reading import is_sure, needs_networks, needs_tags, unknown_commands
 from mmm_core.language.tagged_manner import manner_phrases, with_left_manner, with_likely_manner, with_plain_manner
@@ -182,8 +183,11 @@ class SentenceReader:
         best, answer = max(zip(logs, answers, strict=True))
         likeliest = [answer] if best >= LOG_SURE else states.parse.likeliest(_PROPOSALS)
         found = [*candidates, *self._proposed(candidates, text, states, likeliest)]
-        logs = states.parse.log_likelihoods(self._answers(found))
-        return merged(replace(one, log_parsed=log) for one, log in zip(found, logs, strict=True)), math.exp(outside)
+        asked = self._answers(found)
+        logs = states.parse.log_likelihoods(asked)
+        parsed = [replace(one, log_parsed=log) for one, log in zip(found, logs, strict=True)]
+        fitting = [one for one, steps in zip(parsed, asked, strict=True) if not contradicts_sides(steps, text)]
+        return merged(fitting or parsed), math.exp(outside)
 
     def _answers(self, candidates: Sequence[Candidate]) -> list[GestureSteps]:
         """The answer of the parser that each candidate would be."""

@@ -16,6 +16,7 @@ from mmm_core.language.gesture_steps import is_all_gestures
 from mmm_core.language.limbs import is_gesture_verb
 from mmm_core.language.parsed_reading import reading_in, steps_asked
 from mmm_core.language.plain_gestures import Meant, alternates, family_of
+from mmm_core.language.sides_said import contradicts_sides
 
 LOG_SURE = math.log(0.85)
 """Log-probability from which on an answer is so likely that no other one is sought; training leaves none much above 0.9."""
@@ -52,6 +53,8 @@ def as_surely_parsed(
         return found
     answer = next(iter(states.parse.likeliest(1)), None)
     if answer is None or not is_all_gestures(answer) or states.parse.log_likelihoods([answer])[0] < LOG_SURE:
+        return found
+    if contradicts_sides(answer, found.text):
         return found
     asked = reading_in(answer, found.text, (found,), meant)
     if asked is None:

@@ -34,8 +34,8 @@ _WITH_SIDE = re.compile(
 )
 """A hand that is named without a noun: "two jabs with the left"."""
 _ADDS = re.compile(
-    r"\b(?:each(?! (?:other|time))|half ?way|all the way(?! a?round)|(?:shoulder|waist|hip|chest|head|knee|eye)s?[- ](?:height|high|level)|"
-    r"below|beneath|higher|lower than|low down|down low)\b"
+    r"\b(?:each(?! (?:other|time))|half ?way|all the way(?! a?round)|"
+    r"(?:shoulder|waist|hip|chest|head|knee|eye)s?[- ](?:height|high|level)|below|beneath|higher|lower than|low down|down low)\b"
 )
 """Words for which a plain command has no place: heights, and numbers for each arm."""
 _ADDS_OR_HIGH = re.compile(rf"{_ADDS.pattern}|\b(?:overhead|above|(?:as|up) high)\b")

@@ -50,7 +50,11 @@ def test_a_plain_command_is_read_as_itself() -> None:
         ("raise", "left paw up to shoulder height", ""),
         ("raise", "left paw right overhead", ""),
         ("lift", "that crate goes above your head", ""),
-        ("big_wave", "swing your whole left arm overhead", "swing your straight left arm above your head from side to side"),
+        (
+            "big_wave",
+            "swing your whole left arm overhead",
+            "swing your straight left arm above your head from side to side",
+        ),
         ("heart_over_head", "a big love heart above your hair", "make a heart above your head"),
         ("hands_up", "hands up high in the air", "raise both hands up"),
         ("clap/up", "four claps up high, halfway to the ceiling", ""),
