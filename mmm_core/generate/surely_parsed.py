@@ -22,7 +22,7 @@ LOG_SURE = math.log(0.85)
 """Log-probability from which on an answer is so likely that no other one is sought; training leaves none much above 0.9."""
 _LOG_REST = math.log(0.15)
 """Log-probability from which on no other answer can be that likely."""
-_NEGATIVE = re.compile(r"\b(?:not?|never|nor|without|stop|dont|cant|wont)\b|n't\b")
+_NEGATIVE = re.compile(r"\b(?:not?|never|nor|without|stop|skip|except|leave out|drop|dont|cant|wont)\b|n't\b")
 _FEW = 2
 """Words of a denied act, at most, that may begin otherwise than with a verb of gestures alone: "a bow"."""
 
