@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -12,6 +13,7 @@ from mmm_core.corpus.synthesis import ClipSpec, draw_gesture, synthesise_spec
 from mmm_core.evaluation.reconstruction import shown
 from mmm_core.motion.features import mirror
 from mmm_core.motion.posture_features import PostureFeatures
+from mmm_core.recognition.checks import PALM_M
 from mmm_core.recognition.signs import shows
 from tests.support.sizes import few_and_long
 
@@ -54,6 +56,32 @@ def seen_elsewhere(every: int, every_clip: int) -> dict[str, list[bool]]:
                 where = (FAMILIES[name].directions or ("",))[0]
                 seen[name].append(shows(s, name, asked_side(name, g.side), where))
     return seen
+
+
+RAISED_M = -0.45
+"""Height of the wrist, in the chest frame, above which an arm is raised."""
+FLATTENED = {"draw_circle": 1, "stir": 2, "crank": 1}
+"""Axis of the chest frame along which a circle of each family is flattened."""
+
+
+@pytest.mark.parametrize("family", FLATTENED)
+def test_a_circle_that_is_pressed_flat_is_none(family: str) -> None:
+    """A hand that goes to and fro, a little beside itself on the way back, turns as often as one that draws a circle."""
+    circles = [(g, shown(f)) for g, f in drawn(family, 3)]
+    round_ones = [(g, s) for g, s in circles if shows(s, family, g.side)]
+    assert round_ones
+    for g, s in round_ones:
+        assert not shows(_flattened(s, FLATTENED[family]), family, g.side)
+
+
+def _flattened(s: PostureFeatures, axis: int) -> PostureFeatures:
+    """The motion with palms that keep an eighth of their way along an axis, while they are at the height of the gesture."""
+    wrists, fore = ({side: of[side].copy() for side in of} for of in (s.wrists_m, s.fore))
+    for side, wrist in wrists.items():
+        raised = wrist[:, 1] > RAISED_M
+        palm = wrist[raised] + PALM_M * fore[side][raised]
+        wrist[raised, axis] -= (1 - 1 / 8) * (palm[:, axis] - np.median(palm[:, axis]) if raised.any() else 0.0)
+    return replace(s, wrists_m=wrists)
 
 
 SOME = 12
