@@ -2,12 +2,13 @@
 
 Some phrases of the corpus are too rare for the model to learn, such as "be Katniss"; the gesture that they mean is known
 nevertheless. The table `words/hard_phrases.txt` belongs to the shipped weights: `python -m docs.tools.hard_phrases` measures
-phrases of the corpus. `words/near_gestures.txt` has common commands for which the corpus has no gesture, each with the gesture
-that comes nearest.
+phrases of the corpus. A phrase that goes to the left stands for its mirror image as well. `words/near_gestures.txt` has common
+commands for which the corpus has no gesture, each with the gesture that comes nearest.
 """
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 from functools import cache
 
@@ -19,6 +20,10 @@ from mmm_core.language.word_tables import pairs
 
 _FEWEST_WORDS, _FEWEST_LETTERS = 2, 8
 """Number of significant words and of their letters: a phrase that has fewer of both would match other sentences by chance."""
+_SIDE = re.compile(r"\b(left|right)\b")
+_SIDE_OF_A_HAND = re.compile(
+    r"\b(?:left|right)(?=(?: index| pointer| straight)? (?:hand|arm|fist|palm|fore?finger|finger|pointer|thumb)s?\b)"
+)
 
 
 def said_of(text: str) -> str:
@@ -36,9 +41,22 @@ def without_hard_phrases(text: str, reading: Reading) -> Reading:
 
 
 def _in_plain_words(command: PlainCommand) -> PlainCommand:
-    gesture = _gestures().get(said_of(command.text), "")
+    gesture = to_said_side(_gestures().get(said_of(command.text), ""), command.text)
     words = plain_command(gesture, command.text) if gesture else ""
     return replace(command, text=words, limbs=limbs_of(words)) if words else command
+
+
+def to_said_side(gesture: str, text: str) -> str:
+    """A gesture; if it goes to a side, to the one that a text names, and none where that names no side or both.
+
+    >>> to_said_side("point/left", "aim your left finger to the right"), to_said_side("nod", "nod to the right")
+    ('point/right', 'nod')
+    """
+    family, slash, way = gesture.partition("/")
+    if not _SIDE.search(way):
+        return gesture
+    sides = {*_SIDE.findall(_SIDE_OF_A_HAND.sub(" ", text.lower()))}
+    return family + slash + _SIDE.sub(sides.pop(), way) if len(sides) == 1 else ""
 
 
 @cache
