@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from mmm_core.language.commands import Reading
 from mmm_core.language.limbs import is_gesture_verb
-from mmm_core.language.plain_gestures import OUTSIDE, SURE, Meant, family_of, in_plain_words_of, is_gesture
+from mmm_core.language.plain_gestures import OUTSIDE, SURE, Meant, family_of, is_gesture, plainly_said
 from mmm_core.language.said_at_once import asks_again
 from mmm_core.language.sure_reading import unknown_commands
 from mmm_core.language.word_tables import lines, pairs
@@ -156,6 +156,7 @@ def chosen(ways: Ways) -> Reading:
 
     If it has one command without tempo, size and hold, this takes the manner of another candidate of one command. Where the parser
     finds its gestures likely, too, its commands are said in plain words: "clap your left hand over your gob" covers the mouth.
+    Phrases of the corpus are as well: not every one is performed as well with any hand and number.
     """
     first, *rest = (ways.candidates[i] for i in np.argsort(-(evidence(ways) @ _weights()), kind="stable"))
     best, others = _in_plain_words(first, ways.meant), (one.reading for one in rest)
@@ -167,13 +168,9 @@ def chosen(ways: Ways) -> Reading:
 
 
 def _in_plain_words(one: Candidate, meant: Mapping[str, Meant]) -> Reading:
-    unknown = frozenset(unknown_commands(one.reading))
-    if not unknown or one.log_parsed < _LOG_LIKELY:
+    if one.log_parsed < _LOG_LIKELY:
         return one.reading
-    steps = tuple(
-        tuple(in_plain_words_of(c, meant[c.text], least=0.0) if c.text in unknown else c for c in step)
-        for step in one.reading.steps
-    )
+    steps = tuple(tuple(plainly_said(c, meant[c.text], least=0.0) for c in step) for step in one.reading.steps)
     return replace(one.reading, steps=steps)
 
 

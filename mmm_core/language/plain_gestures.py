@@ -160,15 +160,20 @@ def said_plainly(reading: Reading, meant: Sequence[Meant]) -> Reading:
     )
 
 
-def in_plain_words_of(command: PlainCommand, meant: Meant, least: float = SURE) -> PlainCommand:
-    """A command in plain words of the gesture that it means, if that is likely; phrases of the corpus stay as they are.
+def in_plain_words_of(command: PlainCommand, meant: Meant) -> PlainCommand:
+    """A command in plain words of the gesture that it means, if that is likely; phrases of the corpus stay as they are."""
+    return command if is_known_phrase(command.text) else plainly_said(command, meant)
+
+
+def plainly_said(command: PlainCommand, meant: Meant, least: float = SURE) -> PlainCommand:
+    """A command in plain words of the gesture that it means, if that is likely.
 
     Args:
-        command: the command.
+        command: the command, be it a phrase of the corpus or not.
         meant: what it means.
         least: least probability of its gesture.
     """
-    return command if is_known_phrase(command.text) else _said(command, _plain_words(meant, command.text, least))
+    return _said(command, _plain_words(meant, command.text, least))
 
 
 def without_unasked(reading: Reading, meant: Sequence[Meant]) -> Reading:

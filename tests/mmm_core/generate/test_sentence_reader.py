@@ -78,7 +78,7 @@ def test_words_of_the_act_are_not_taken_for_its_manner(reader: SentenceReader, e
     ("sentence", "steps"),
     [
         ("Stretch upward and when you're done let your arms fall",
-         [["stretch upward"], ["lower both arms"]]),
+         [["stretch your arms up"], ["lower both arms"]]),
         ("Circle your right arm forwards and the left backwards.",
          [["circle your right arm forwards", "circle your left arm backwards"]]),
         ("Blow a kiss, but put your hand on your heart beforehand", [["put your hand on your heart"], ["blow a kiss"]]),
@@ -92,7 +92,7 @@ def test_words_of_the_act_are_not_taken_for_its_manner(reader: SentenceReader, e
         ("do a somersault", [["do a somersault"]]),
         ("party with your arms 2x left and right in turn", [["party with your arms 2 times left and right in turn"]]),
         ("Sparring time! A jab, then an uppercut with the left.",
-         [["punch forward"], ["an uppercut with your left hand"]]),
+         [["punch forward"], ["throw a left uppercut"]]),
         ("Have yourself a good stretch, and as you do, yawn.", [["stretch your arms up", "yawn"]]),
         ("The soup wants stirring; once it has been stirred, taste it.",
          [["stir the soup"], ["bring food to your mouth"]]),
