@@ -23,11 +23,11 @@ def contradicts_sides(steps: GestureSteps, text: str) -> bool:
     "Twist to the right, but not to the left" asks for no twist to the left. Arms are no matter: "any arm except the left" asks for
     the right one.
     """
-    found = list(_SIDE.finditer(mended(text).lower()))
-    if not found or _ANY_SIDE.search(text.lower()):
+    ways = {way for step in steps for one in step for way in _ways(one.gesture)}
+    if not ways or _ANY_SIDE.search(text.lower()):
         return False
-    said = {one["side"] for one in found if not one["denied"]}
-    return not {way for step in steps for one in step for way in _ways(one.gesture)} <= said
+    found = list(_SIDE.finditer(mended(text).lower()))
+    return bool(found) and not ways <= {one["side"] for one in found if not one["denied"]}
 
 
 def _ways(gesture: str) -> set[str]:

@@ -41,6 +41,7 @@ def eval(
         "test",
         "test_singles",
         "test_denials",
+        "test_denials_2",
         "test_1",
         "test_2",
         "test_3",

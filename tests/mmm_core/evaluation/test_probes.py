@@ -72,6 +72,7 @@ def test_the_test_set_shares_no_sentence_with_the_development_set() -> None:
         ("words_test", 310),
         ("words_test_singles", 231),
         ("words_test_denials", 221),
+        ("words_test_denials_2", 208),
         ("words_test_5", 215),
         ("words_test_4", 223),
         ("words_test_3", 219),

@@ -62,6 +62,7 @@ def test_no_expression_is_a_sentence_that_measures() -> None:
         "words_test",
         "words_test_singles",
         "words_test_denials",
+        "words_test_denials_2",
         "words_test_4",
         "words_test_5",
         "words_test_3",
