@@ -28,7 +28,7 @@ from mmm_core.corpus.withheld import is_withheld
 from mmm_core.evaluation.fidelity import cases_of, counting_checks, faults_of
 from mmm_core.generate.engine import Engine
 from mmm_core.language.hard_phrases import said_of, to_said_side
-from mmm_core.language.plain_gestures import gestures, plain_command
+from mmm_core.language.plain_gestures import gestures, plain_command, sides_of
 from mmm_core.language.reading import read
 from mmm_core.language.word_tables import HARD_PHRASES_FILE
 
@@ -61,7 +61,7 @@ def main(found: Path, wanted: Sequence[str]) -> None:
 
 def measured() -> list[str]:
     """The gestures but those that go to the right."""
-    return [gesture for gesture in gestures() if "right" not in gesture.partition("/")[2]]
+    return [gesture for gesture in gestures() if "right" not in sides_of(gesture)]
 
 
 def phrases_of(gesture: str) -> Iterator[Said]:

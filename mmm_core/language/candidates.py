@@ -156,7 +156,7 @@ def chosen(ways: Ways) -> Reading:
 
     If it has one command without tempo, size and hold, this takes the manner of another candidate of one command. Where the parser
     finds its gestures likely, too, its commands are said in plain words: "clap your left hand over your gob" covers the mouth.
-    Phrases of the corpus are as well: not every one is performed as well with any hand and number.
+    So are phrases of the corpus, since the model performs some of them badly with certain hands and numbers.
     """
     first, *rest = (ways.candidates[i] for i in np.argsort(-(evidence(ways) @ _weights()), kind="stable"))
     best, others = _in_plain_words(first, ways.meant), (one.reading for one in rest)

@@ -15,7 +15,7 @@ from functools import cache
 from mmm_core.language.commands import EXACTLY, PlainCommand, Reading
 from mmm_core.language.known_phrases import significant_words
 from mmm_core.language.limbs import limbs_of
-from mmm_core.language.plain_gestures import IN_TURN, plain_command
+from mmm_core.language.plain_gestures import IN_TURN, plain_command, sides_of
 from mmm_core.language.word_tables import pairs
 
 _FEWEST_WORDS, _FEWEST_LETTERS = 2, 8
@@ -52,11 +52,10 @@ def to_said_side(gesture: str, text: str) -> str:
     >>> to_said_side("point/left", "aim your left finger to the right"), to_said_side("nod", "nod to the right")
     ('point/right', 'nod')
     """
-    family, slash, way = gesture.partition("/")
-    if not _SIDE.search(way):
+    if not sides_of(gesture):
         return gesture
-    sides = {*_SIDE.findall(_SIDE_OF_A_HAND.sub(" ", text.lower()))}
-    return family + slash + _SIDE.sub(sides.pop(), way) if len(sides) == 1 else ""
+    named = {*_SIDE.findall(_SIDE_OF_A_HAND.sub(" ", text.lower()))}
+    return _SIDE.sub(named.pop(), gesture) if len(named) == 1 else ""
 
 
 @cache

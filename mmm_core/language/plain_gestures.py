@@ -120,6 +120,11 @@ def family_of(gesture: str) -> str:
     return gesture.partition("/")[0]
 
 
+def sides_of(gesture: str) -> set[str]:
+    """The sides to which a gesture goes, "left" or "right": none, or one."""
+    return {"left", "right"} & {*gesture.partition("/")[2].split()}
+
+
 def gesture_of(command: str) -> str:
     """The gesture whose plain command this is, with whatever arm and number of strokes; empty for other words."""
     return _by_command().get(without_times(command), "")

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import re
 
-from mmm_core.language.gesture_steps import LEFT, RIGHT, GestureSteps
+from mmm_core.language.gesture_steps import GestureSteps
+from mmm_core.language.plain_gestures import sides_of
 from mmm_core.language.spelling import mended
 
 _SIDE = re.compile(
@@ -20,16 +21,11 @@ _ANY_SIDE = re.compile(
 def contradicts_sides(steps: GestureSteps, text: str) -> bool:
     """Whether a gesture goes to a side that a sentence denies, or does not name although it names the other one.
 
-    "Twist to the right, but not to the left" asks for no twist to the left. Arms are no matter: "any arm except the left" asks for
-    the right one.
+    "Twist to the right, but not to the left" asks for no twist to the left. Arms are not looked at: "any arm except the left"
+    asks for the right one.
     """
-    ways = {way for step in steps for one in step for way in _ways(one.gesture)}
-    if not ways or _ANY_SIDE.search(text.lower()):
+    sides = {side for step in steps for one in step for side in sides_of(one.gesture)}
+    if not sides or _ANY_SIDE.search(text.lower()):
         return False
     found = list(_SIDE.finditer(mended(text).lower()))
-    return bool(found) and not ways <= {one["side"] for one in found if not one["denied"]}
-
-
-def _ways(gesture: str) -> set[str]:
-    """The sides to which a gesture goes: none, or one."""
-    return {LEFT, RIGHT} & {*gesture.partition("/")[2].split()}
+    return bool(found) and not sides <= {one["side"] for one in found if not one["denied"]}

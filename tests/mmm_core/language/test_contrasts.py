@@ -10,6 +10,7 @@ from tests.support.readings import said
 @pytest.mark.parametrize(
     ("text", "read_as"),
     [
+        ("do not point up or down just clap", "clap | not: point up or down"),
         ("give yawning a rest and nod", "nod | not: yawning"), ("give the dab a miss, clap", "clap | not: the dab"),
         ("keep waving for another day and salute", "salute | not: waving"),
         ("save looking up to the right for later and clap", "clap | not: looking up to the right"),
