@@ -19,10 +19,13 @@ from retarget.robot.robot import RobotModel
 from retarget.robot_to_human import joints_of_path
 
 FADE_FRAMES = 8
-"""Largest number of pose frames (0.4 s) over which a motion is blended out of the poses before it."""
+"""Number of pose frames (0.4 s) over which a motion is blended out of the poses before it, unless these are near or far."""
 _LEAST_FADE_FRAMES, _FADE_DEG_PER_FRAME = 3, 4.0
 """Frames of the shortest blend, and degrees between the poses for each further frame: where the two are near, as after idle
 movements, a long blend would only delay the motion's visible beginning."""
+_FAR_DEG, _FAR_DEG_PER_FRAME = 60.0, 15.0
+"""Degrees between the poses from which on `FADE_FRAMES` are too few, and degrees for each further frame: a longer way in the same
+time would be more jerky than a person's movement (`mmmd bench seams`)."""
 _LEAST_BLOCK, _MOST_BLOCK = 12, 36
 """Frames of a block: with fewer, limits would be kept with less of the motion in view, with more the first takes longer."""
 _WHOLE = 1e-9
@@ -46,6 +49,7 @@ def blended_from(before: PoseSequence, posture: PoseSequence, *, easy: bool = Fa
         n = max(FADE_FRAMES, math.ceil(far_deg / _EASY_DEG_S * posture.fps))
     else:
         n = min(FADE_FRAMES, _LEAST_FADE_FRAMES + math.ceil(far_deg / _FADE_DEG_PER_FRAME))
+        n += max(0, math.ceil((far_deg - _FAR_DEG) / _FAR_DEG_PER_FRAME))
     return faded_in(posture, before, n)
 
 

@@ -51,11 +51,11 @@ def blended_frames(before: PoseSequence, after: PoseSequence, *, easy: bool = Fa
     return int(np.flatnonzero(changed)[-1]) + 2  # the last frame of a blend has the full weight of `after`
 
 
-def test_poses_that_are_near_are_blended_in_less_time():
+def test_the_farther_the_poses_the_longer_the_blend():
     """After idle movements, a few degrees from a motion's first pose, a long blend would hide the motion's beginning."""
-    moving = posture_of(raised_arm("right", 4.0, 1.2, "right"))
+    moving = posture_of(raised_arm("right", 4.0, 2.0, "right"))
     apart_deg = distance_deg(moving, moving.at(np.zeros(len(moving), np.intp)))
-    near, far = (int(np.argmax(apart_deg > deg)) for deg in (5.0, 30.0))
-    frames = [blended_frames(moving.at(np.full(FADE_FRAMES, at)), moving[:20]) for at in (near, far)]
-    assert 3 <= frames[0] < FADE_FRAMES and frames[1] == FADE_FRAMES
+    near, far, farther = (int(np.argmax(apart_deg > deg)) for deg in (5.0, 30.0, 90.0))
+    frames = [blended_frames(moving.at(np.full(FADE_FRAMES, at)), moving[:20]) for at in (near, far, farther)]
+    assert 3 <= frames[0] < FADE_FRAMES == frames[1] < frames[2] <= FADE_FRAMES + 4
     assert blended_frames(moving.at(np.full(FADE_FRAMES, far)), moving[:20], easy=True) > FADE_FRAMES
