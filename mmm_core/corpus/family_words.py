@@ -1,8 +1,8 @@
 """Makes word tables from the corpus's phrases and captions.
 
 The tables are `mmm_core/recognition/family_words.txt` (words of each family) and, in `mmm_core/language/words`, `corpus_words.txt`
-(all words), `limb_words.txt` (words that name a limb), `word_pairs.txt` (pairs of words), `one_gesture.txt` and
-`known_phrases.bin`. Run `python -m mmm_core.corpus.family_words` after phrases have changed; a test fails when that is needed.
+(all words), `limb_words.txt` (words that name a limb), `word_pairs.txt` (pairs of words), `one_gesture.txt`, `known_phrases.bin`
+and `phrase_gestures.bin`. Run `python -m mmm_core.corpus.family_words` after phrases have changed; a test fails when that is needed.
 """
 
 from __future__ import annotations
@@ -20,10 +20,13 @@ from mmm_core.corpus.families import FAMILIES
 from mmm_core.corpus.outside import OUTSIDE
 from mmm_core.corpus.plain_commands import manner_phrases, plain_phrases
 from mmm_core.corpus.synthesis import draw_spec, words_for
-from mmm_core.language.inflection import NUMBERS
+from mmm_core.corpus.withheld import is_withheld
+from mmm_core.language.inflection import NUMBERS, gerund
 from mmm_core.language.known_phrases import key_of
 from mmm_core.language.limbs import SAYS_NO_LIMB
 from mmm_core.language.one_gesture import JOINING, stems_of
+from mmm_core.language.phrase_gestures import packed, phrase_key
+from mmm_core.language.plain_gestures import gestures, sides_of
 from mmm_core.language.reading import read
 from mmm_core.language.spelling import mended
 from mmm_core.language.word_tables import (
@@ -31,6 +34,7 @@ from mmm_core.language.word_tables import (
     KNOWN_PHRASES_FILE,
     LIMB_WORDS_FILE,
     ONE_GESTURE_FILE,
+    PHRASE_GESTURES_FILE,
     WORD_PAIRS_FILE,
 )
 from mmm_core.language.word_tables import lines as table_lines
@@ -131,7 +135,7 @@ def one_gesture() -> str:
             said = phrase.replace("{n}", "").replace("{D}", direction).replace("{S}", "left").replace("{N}", "three")
             said = mended(said)
             stems = stems_of(said)
-            if stems in parted or not _is_parted(said):
+            if stems in parted or not (_is_parted(said) or _is_parted(gerund(said, None))):
                 continue
             parted[stems] = said
     return "".join(f"{said}\n" for said in parted.values())
@@ -148,6 +152,24 @@ def known_phrases() -> bytes:
             }
     keys -= {None, *map(key_of, OUTSIDE)}
     return array("I", sorted(key for key in keys if key is not None)).tobytes()
+
+
+def phrase_gestures() -> bytes:
+    """The content of `phrase_gestures.bin`: phrases of one gesture alone, apart from its side, that no held-out text may use."""
+    meanings: defaultdict[int | None, set[str]] = defaultdict(set)
+    for gesture in gestures():
+        if "right" in sides_of(gesture):
+            continue  # its phrases are those of the mirror image
+        family, _, direction = gesture.partition("/")
+        for _, phrase in plain_phrases(family, direction):
+            if not is_withheld(phrase):
+                said = (
+                    phrase.replace("{D}", direction).replace("{N}", "three").replace("{S}", "left").replace("{n}", "")
+                )
+                for words in {said, mended(said) if "'" in said else said}:  # "here's" is read as "here is"
+                    meanings[phrase_key(words)].add(gesture)
+    outside = {None, *map(phrase_key, OUTSIDE)}
+    return packed({key: min(found) for key, found in meanings.items() if key not in outside and len(found) == 1})
 
 
 def _is_parted(phrase: str) -> bool:
@@ -180,3 +202,4 @@ if __name__ == "__main__":
     Path(str(LIMB_WORDS_FILE)).write_text(limb_words(), encoding="utf-8")
     Path(str(ONE_GESTURE_FILE)).write_text(one_gesture(), encoding="utf-8")
     Path(str(KNOWN_PHRASES_FILE)).write_bytes(known_phrases())
+    Path(str(PHRASE_GESTURES_FILE)).write_bytes(phrase_gestures())

@@ -19,7 +19,16 @@ from mmm_core.generate.surely_parsed import LOG_SURE, as_surely_parsed
 from mmm_core.generate.word_models import WordModels
 from mmm_core.inference.onednn_linear import Packing
 from mmm_core.language.asides import without_asides
-from mmm_core.language.candidates import Candidate, Ways, chosen, commands_of, in_sentence, is_task, merged
+from mmm_core.language.candidates import (
+    Candidate,
+    Ways,
+    chosen,
+    commands_of,
+    in_sentence,
+    is_task,
+    merged,
+    share_of_phrases,
+)
 from mmm_core.language.commands import EXACTLY, Reading
 from mmm_core.language.contrasts import contrasted
 from mmm_core.language.denial import surely_denies
@@ -158,8 +167,8 @@ class SentenceReader:
         )  # all in one pass
         finished = [self._in_plain_words(with_left_manner(one, words, phrases), states) for one in readings]
         candidates = merged(
-            replace(one, reading=said_at_once(without_repeats(reading)))
-            for one, reading in zip(found, finished, strict=True)
+            replace(one, reading=said_at_once(without_repeats(plain)), phrases=share_of_phrases(reading))
+            for one, reading, plain in zip(found, readings, finished, strict=True)
         )
         candidates = self._without_contradictions(candidates)
         candidates, outside = self._parsed(candidates, text, states)
@@ -217,7 +226,7 @@ class SentenceReader:
             if (not is_nothing if steps else may_be_nothing) and keeps_denials(steps, readings, meant, acts, log)
         )
         found = (reading_in(steps, text, readings, meant) for steps in allowed)
-        return [Candidate(one, by_parser=True) for one in found if one is not None]
+        return [Candidate(one, by_parser=True, phrases=share_of_phrases(one)) for one in found if one is not None]
 
     def _candidates(self, words: str, states: Encoded) -> list[Candidate]:
         """The readings of words by the rules and by each likely sequence of tags."""

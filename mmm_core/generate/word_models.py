@@ -11,6 +11,7 @@ from mmm_core.inference.onednn_linear import Packing, pack
 from mmm_core.inference.own_layers_file import PARSER_FILE, load_classifier, load_parser, load_tagger
 from mmm_core.language.gesture_steps import tokens
 from mmm_core.language.mirroring import canonical
+from mmm_core.language.phrase_gestures import gesture_of_phrase
 from mmm_core.language.plain_gestures import Meant, gesture_of
 from mmm_core.language.tagged_words import words_of
 from mmm_core.language.word_tables import REMEMBERED
@@ -79,7 +80,9 @@ class WordModels:
         if new := [text for text in commands if text not in self._classified]:
             if len(self._classified) > REMEMBERED:
                 self._classified = {text: self._classified[text] for text in commands if text not in new}
-            self._classified |= {text: Meant(gesture, 1.0) for text in new if (gesture := gesture_of(text))}
+            self._classified |= {
+                text: Meant(gesture, 1.0) for text in new if (gesture := gesture_of(text) or gesture_of_phrase(text))
+            }
             if others := [text for text in new if text not in self._classified]:
                 self._classify(others)
         return {text: self._classified[text] for text in commands}

@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 
 from mmm_core.language.commands import Reading
 from mmm_core.language.limbs import is_gesture_verb
+from mmm_core.language.phrase_gestures import gesture_of_phrase
 from mmm_core.language.plain_gestures import OUTSIDE, SURE, Meant, family_of, is_gesture, plainly_said
 from mmm_core.language.said_at_once import asks_again
 from mmm_core.language.sure_reading import unknown_commands
@@ -47,6 +48,7 @@ EVIDENCE = (
     "parsed",  # logarithm of the parser's probability of its gestures, and that probability
     "parsed, surely",
     "by parser",  # whether only the parser reads the sentence so
+    "phrases",  # share of its commands that are phrases of one gesture, in the sentence's own words
 )
 """The kinds of evidence for or against a candidate, in the order of the columns of `evidence`."""
 _AT_ONCE = re.compile(
@@ -84,6 +86,7 @@ class Candidate:
         log_share: logarithm of the probability of its division, relative to the likeliest one, for which it is 0.
         by_parser: whether only the parser reads it so.
         log_parsed: logarithm of the parser's probability of its gestures.
+        phrases: share of its commands that are phrases of one gesture, in the sentence's own words (`share_of_phrases`).
     """
 
     reading: Reading
@@ -93,6 +96,7 @@ class Candidate:
     log_share: float = _NO_TAGS
     by_parser: bool = False
     log_parsed: float = -math.inf
+    phrases: float = 0.0
 
 
 class Ways(NamedTuple):
@@ -116,6 +120,13 @@ def in_sentence(meant: Sequence[Meant]) -> float:
     return min((_log(one) for one in meant), default=0.0)
 
 
+def share_of_phrases(reading: Reading) -> float:
+    """The share of the commands of a reading that are phrases of one gesture of the corpus and stand in its text."""
+    said = reading.text.lower()
+    commands = [command.text.lower() for step in reading.steps for command in step]
+    return sum(c in said and gesture_of_phrase(c) != "" for c in commands) / max(len(commands), 1)
+
+
 def merged(candidates: Iterable[Candidate]) -> list[Candidate]:
     """Candidates of which no two have the same commands in the same steps; one has what speaks for any of these.
 
@@ -136,6 +147,7 @@ def merged(candidates: Iterable[Candidate]) -> list[Candidate]:
             likelier.log_share,
             same.by_parser and one.by_parser,
             max(same.log_parsed, one.log_parsed),
+            max(same.phrases, one.phrases),
         )
     return list(found.values())
 
@@ -217,6 +229,7 @@ def _evidence(one: Candidate, ways: Ways, in_divisions: Mapping[str, float]) -> 
         max(one.log_parsed, _LEAST_PARSED),
         math.exp(one.log_parsed),
         one.by_parser,
+        one.phrases,
     ]
 
 

@@ -26,13 +26,19 @@ CAPTION_SUBJECT = (
 """Pattern of the subject of a caption of one motion, such as the corpus has: "a man is shooting out their right hand"."""
 _SUBJECT = re.compile(rf"^\s*{CAPTION_SUBJECT} (?=(?:is )?\w+(?:s|ing)\b)")
 """The subject before a verb: "this person shifts from foot to foot"."""
+BESIDE = re.compile(
+    r"(?:,? (?:exactly|just|only))* (?:(?:\w+ times?|a single time)(?: in a row)?|once|twice)\b|"
+    r"(?: with| using) (?:the|your|their|his|her|its|both) (?:left |right )?(?:arm|hand)s?\b"
+)
+"""Number of strokes and hand of a command."""
+_ARMS = frozenset("hand hands arm arms".split())
 _SAYS_NOTHING = frozenset(
     (
         "a an the your my his her its their both one of left right please robot now do does doing perform make give me us show "
-        "some with using hand hands arm arms time times"
+        "some with using time times"
     ).split()
 ) | {*NUMBERS, *ADVERBS}
-"""Words that a command may gain or lose without a change of its gesture."""
+"""Words that, like those for arms, a command may gain or lose without a change of its gesture."""
 
 
 def key_of(text: str) -> int | None:
@@ -45,10 +51,10 @@ def key_of(text: str) -> int | None:
     return zlib.crc32(said.encode()) if len(said) >= FEWEST_LETTERS else None
 
 
-def significant_words(text: str) -> list[str]:
-    """The stems of the words of a text that say which gesture is meant."""
-    said = _SUBJECT.sub("", text.lower())
-    return [stem(word) for word in _WORD.findall(said) if word not in _SAYS_NOTHING and not word.isdigit()]
+def significant_words(text: str, *, with_arms: bool = False) -> list[str]:
+    """The stems of the words of a text that say which gesture is meant, `with_arms` also those for arms and hands."""
+    words = [word for word in _WORD.findall(_SUBJECT.sub("", text.lower())) if word not in _SAYS_NOTHING]
+    return [stem(word) for word in words if not word.isdigit() and (with_arms or word not in _ARMS)]
 
 
 def is_known_phrase(text: str) -> bool:

@@ -8,7 +8,7 @@ from mmm_core.language.alternatives import is_for_any_other
 from mmm_core.language.clause_patterns import LIMB_FIRST
 from mmm_core.language.commands import Reading
 from mmm_core.language.denial_patterns import ANYTHING_BUT, SOMETHING_ELSE
-from mmm_core.language.known_phrases import CAPTION_SUBJECT, is_known_phrase, key_of
+from mmm_core.language.known_phrases import BESIDE, CAPTION_SUBJECT, is_known_phrase, key_of
 from mmm_core.language.limbs import begins_with_a_verb, is_gesture_verb, limbs_of
 
 _JOINS = re.compile(
@@ -17,11 +17,6 @@ _JOINS = re.compile(
 """Marks and words of which a single command seldom has one: more than one command, a reason or a story may be left in it."""
 _NOUN_FIRST = re.compile(r"(?:an?|one|two|three|\w+) \w+")
 _IS_CAPTION = re.compile(CAPTION_SUBJECT)
-_BESIDE = re.compile(
-    r"(?:,? (?:exactly|just|only))* (?:(?:\w+ times?|a single time)(?: in a row)?|once|twice)\b|"
-    r"(?: with| using) (?:the|your|their|his|her|its|both) (?:left |right )?(?:arm|hand)s?\b"
-)
-"""Number of strokes and hand of a command."""
 _LONGEST_SURE = 9
 """Words of a command that the rules are sure of, at most."""
 _DENIES_TWO = re.compile(r"\b(?:or|nor|and no)\b")
@@ -62,7 +57,7 @@ def is_sure(reading: Reading) -> bool:
         )
     if len(commands) == 1 and _IS_CAPTION.match(commands[0]):
         return True
-    return all(is_known_phrase(_BESIDE.sub("", command)) or _is_simple(command) for command in commands)
+    return all(is_known_phrase(BESIDE.sub("", command)) or _is_simple(command) for command in commands)
 
 
 def needs_tags(reading: Reading) -> bool:
@@ -72,7 +67,7 @@ def needs_tags(reading: Reading) -> bool:
     you'll drop it". Of 3,205 sentences by seven writers, networks mend 12 such that the rules read surely, and spoil 3.
     Words that may say a manner are in a command that is no phrase of the corpus, or in a comparison that was left out.
     """
-    commands = [_BESIDE.sub("", command.text.lower()) for step in reading.steps for command in step]
+    commands = [BESIDE.sub("", command.text.lower()) for step in reading.steps for command in step]
     if len(commands) == 1 and _IS_CAPTION.match(commands[0]):
         return False
     if _may_be_divided_wrongly(reading) or (reading.denied and reading.steps):
@@ -123,7 +118,7 @@ def needs_networks(reading: Reading) -> bool:
 def unknown_commands(reading: Reading) -> list[str]:
     """The words of the commands that are no phrases of the corpus, each once; short ones that begin with a gesture's verb are."""
     said = [command.text for step in reading.steps for command in step]
-    return [text for text in dict.fromkeys(said) if not _is_known(_BESIDE.sub("", text.lower()))]
+    return [text for text in dict.fromkeys(said) if not _is_known(BESIDE.sub("", text.lower()))]
 
 
 def _is_known(command: str) -> bool:

@@ -17,6 +17,7 @@ CORPUS_WORDS_FILE = _FOLDER.joinpath("corpus_words.txt")
 KNOWN_PHRASES_FILE = _FOLDER.joinpath("known_phrases.bin")
 HARD_PHRASES_FILE = _FOLDER.joinpath("hard_phrases.txt")
 LIMB_WORDS_FILE = _FOLDER.joinpath("limb_words.txt")
+PHRASE_GESTURES_FILE = _FOLDER.joinpath("phrase_gestures.bin")
 ONE_GESTURE_FILE = _FOLDER.joinpath("one_gesture.txt")
 WORD_PAIRS_FILE = _FOLDER.joinpath("word_pairs.txt")
 

@@ -53,6 +53,18 @@ def _manners(reading: Reading) -> set[str]:
     return found
 
 
+@pytest.mark.parametrize(
+    ("text", "command"),
+    [
+        ("do not strike a dab, sulk instead", "slump down"),  # the classifier takes it for a shrug
+        ("do not wave off the flies, some grooving instead", "pump both arms to the beat"),
+        ("jive exactly 3 times", "pump both arms to the beat 3 times"),
+    ],
+)
+def test_a_phrase_of_the_corpus_means_its_own_gesture(reader: SentenceReader, text: str, command: str) -> None:
+    assert [c.text for step in reader.read(text).steps for c in step] == [command]
+
+
 @pytest.mark.long
 def test_it_finds_more_tempos_and_sizes_than_the_rules_alone(reader: SentenceReader) -> None:
     given = [s for s in read_sentences("words_dev") if s.kind == "manner" and len(s.commands) == 1]

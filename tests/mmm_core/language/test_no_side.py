@@ -52,6 +52,7 @@ def test_no_side_is_read_where_none_is_named(text: str, read_as: str) -> None:
     [
         ("look right", "look to the right"),
         ("look right down left up", "look to the right > look down > look to the left > look up"),
+        ("look to the top left", "look to the top left"),
         ("turn right then left", "turn right > turn left"),
         ("turn right up to the wall", "turn right up to the wall"),
         ("left arm up right arm up", "raise your left hand + raise your right hand"),
