@@ -25,7 +25,7 @@ from mmm_core.language.inflection import NUMBERS, gerund
 from mmm_core.language.known_phrases import key_of
 from mmm_core.language.limbs import SAYS_NO_LIMB
 from mmm_core.language.one_gesture import JOINING, stems_of
-from mmm_core.language.phrase_gestures import packed, phrase_key
+from mmm_core.language.phrase_gestures import PhraseMeaning, packed, phrase_key
 from mmm_core.language.plain_gestures import gestures, sides_of
 from mmm_core.language.reading import read
 from mmm_core.language.spelling import mended
@@ -155,21 +155,35 @@ def known_phrases() -> bytes:
 
 
 def phrase_gestures() -> bytes:
-    """The content of `phrase_gestures.bin`: phrases of one gesture alone, apart from its side, that no held-out text may use."""
-    meanings: defaultdict[int | None, set[str]] = defaultdict(set)
+    """The content of `phrase_gestures.bin`: phrases of one gesture alone, apart from its side, that no held-out text may use.
+
+    A phrase stands there in its own words and in those in which the rules read it; where these are another phrase's own words,
+    they mean what that one does.
+    """
+    meanings: defaultdict[int | None, set[tuple[str, str]]] = defaultdict(set)
+    as_read: defaultdict[int | None, set[tuple[str, str]]] = defaultdict(set)
     for gesture in gestures():
         if "right" in sides_of(gesture):
             continue  # its phrases are those of the mirror image
         family, _, direction = gesture.partition("/")
-        for _, phrase in plain_phrases(family, direction):
-            if not is_withheld(phrase):
-                said = (
-                    phrase.replace("{D}", direction).replace("{N}", "three").replace("{S}", "left").replace("{n}", "")
-                )
-                for words in {said, mended(said) if "'" in said else said}:  # "here's" is read as "here is"
-                    meanings[phrase_key(words)].add(gesture)
+        for row, phrase in plain_phrases(family, direction):
+            if is_withheld(phrase) or phrase.startswith("pretend"):
+                continue
+            said = phrase.replace("{D}", direction).replace("{N}", "three").replace("{S}", "left").replace("{n}", "")
+            meanings[phrase_key(said)].add((gesture, row))
+            as_read[phrase_key(_one_command(said))].add((gesture, row))
     outside = {None, *map(phrase_key, OUTSIDE)}
-    return packed({key: min(found) for key, found in meanings.items() if key not in outside and len(found) == 1})
+    of_one: dict[int, PhraseMeaning] = {}
+    for key, found in (as_read | meanings).items():
+        if key is not None and key not in outside and len({gesture for gesture, _ in found}) == 1:
+            of_one[key] = PhraseMeaning(min(found)[0], {row for _, row in found} == {"both"})
+    return packed(of_one)
+
+
+def _one_command(phrase: str) -> str:
+    """The command that the rules read in a phrase; empty where they read several, or none."""
+    steps = read(" ".join(phrase.split())).steps
+    return steps[0][0].text if [len(step) for step in steps] == [1] else ""
 
 
 def _is_parted(phrase: str) -> bool:

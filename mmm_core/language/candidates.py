@@ -17,9 +17,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from mmm_core.language.commands import Reading
+from mmm_core.language.commands import PlainCommand, Reading
 from mmm_core.language.limbs import is_gesture_verb
-from mmm_core.language.phrase_gestures import gesture_of_phrase
+from mmm_core.language.phrase_gestures import gesture_of_phrase, is_for_both_arms
 from mmm_core.language.plain_gestures import OUTSIDE, SURE, Meant, family_of, is_gesture, plainly_said
 from mmm_core.language.said_at_once import asks_again
 from mmm_core.language.sure_reading import unknown_commands
@@ -182,8 +182,11 @@ def chosen(ways: Ways) -> Reading:
 def _in_plain_words(one: Candidate, meant: Mapping[str, Meant]) -> Reading:
     if one.log_parsed < _LOG_LIKELY:
         return one.reading
-    steps = tuple(tuple(plainly_said(c, meant[c.text], least=0.0) for c in step) for step in one.reading.steps)
-    return replace(one.reading, steps=steps)
+
+    def plain(c: PlainCommand) -> PlainCommand:
+        return plainly_said(c, meant[c.text], least=0.0, both_arms=is_for_both_arms(c.text))
+
+    return replace(one.reading, steps=tuple(tuple(map(plain, step)) for step in one.reading.steps))
 
 
 def _is_one_command(reading: Reading) -> bool:

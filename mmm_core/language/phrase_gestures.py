@@ -1,7 +1,7 @@
-"""The gesture of a phrase of the corpus: the classifier, which generalises, mistakes one in twelve of them for another gesture.
+"""The gesture of a phrase of the corpus: without it another class is named for one in eleven captions, with it for one in 33.
 
-`words/phrase_gestures.bin` has a hash of each phrase of a single gesture, and the gesture's number in `gestures`. A phrase that
-goes to the left stands for its mirror image as well.
+`words/phrase_gestures.bin` has a hash of each phrase of a single gesture, that gesture's number in `gestures`, and whether the
+phrase means both arms though it may name none. A phrase that goes to the left stands for its mirror image as well.
 """
 
 from __future__ import annotations
@@ -9,7 +9,9 @@ from __future__ import annotations
 import zlib
 from array import array
 from bisect import bisect_left
+from collections.abc import Mapping
 from functools import cache
+from typing import NamedTuple
 
 from mmm_core.language.hard_phrases import to_said_side
 from mmm_core.language.known_phrases import BESIDE, significant_words
@@ -19,6 +21,13 @@ from mmm_core.language.word_tables import PHRASE_GESTURES_FILE
 _FEWEST_LETTERS = 3
 """Number of letters of the words of a phrase: shorter ones ("go") stand in many sentences."""
 _KEY_BYTES = 4
+
+
+class PhraseMeaning(NamedTuple):
+    """What a phrase of the corpus means: its gesture, to the left where it has a side, and whether it means both arms."""
+
+    gesture: str
+    both_arms: bool
 
 
 def phrase_key(text: str) -> int | None:
@@ -37,23 +46,45 @@ def gesture_of_phrase(text: str) -> str:
     >>> gesture_of_phrase("be jack on the beanstalk"), gesture_of_phrase("twist to the right"), gesture_of_phrase("be happy")
     ('climb', 'twist/right', '')
     """
-    key, (keys, numbers) = phrase_key(text), _known()
-    at = bisect_left(keys, key) if key is not None else len(keys)
-    return to_said_side(gestures()[numbers[at]], text) if at < len(keys) and keys[at] == key else ""
+    meaning = _meaning_of(text)
+    return to_said_side(meaning.gesture, text) if meaning else ""
 
 
-def packed(found: dict[int, str]) -> bytes:
-    """The content of the file for gestures by the hash of their phrase: ascending hashes, then a byte for each gesture."""
+def is_for_both_arms(text: str) -> bool:
+    """Whether a phrase of one gesture means both arms: "stand at parade rest".
+
+    >>> is_for_both_arms("stand at parade rest"), is_for_both_arms("hide a hand behind your back")
+    (True, False)
+    """
+    meaning = _meaning_of(text)
+    return meaning is not None and meaning.both_arms
+
+
+def packed(meanings: Mapping[int, PhraseMeaning]) -> bytes:
+    """The content of the file: ascending hashes of phrases, a byte for each gesture, and a byte for each "both arms"."""
     numbers = {name: number for number, name in enumerate(gestures())}
-    keys = sorted(found)
-    return array("I", keys).tobytes() + bytes(numbers[found[key]] for key in keys)
+    keys = sorted(meanings)
+    found = [meanings[key] for key in keys]
+    return b"".join(
+        (
+            array("I", keys).tobytes(),
+            bytes(numbers[one.gesture] for one in found),
+            bytes(one.both_arms for one in found),
+        )
+    )
+
+
+def _meaning_of(text: str) -> PhraseMeaning | None:
+    key, (keys, numbers, both) = phrase_key(text), _known()
+    at = bisect_left(keys, key) if key is not None else len(keys)
+    return PhraseMeaning(gestures()[numbers[at]], bool(both[at])) if at < len(keys) and keys[at] == key else None
 
 
 @cache
-def _known() -> tuple[array[int], bytes]:
-    """The hashes, ascending, and the number of the gesture of each."""
+def _known() -> tuple[array[int], bytes, bytes]:
+    """The hashes, ascending, and for each the number of its gesture and whether it means both arms."""
     content = PHRASE_GESTURES_FILE.read_bytes()
-    end = len(content) // (_KEY_BYTES + 1) * _KEY_BYTES
-    keys = array("I", content[:end])
+    n = len(content) // (_KEY_BYTES + 2)
+    keys = array("I", content[: n * _KEY_BYTES])
     assert keys.itemsize == _KEY_BYTES
-    return keys, content[end:]
+    return keys, content[n * _KEY_BYTES : -n], content[-n:]

@@ -83,7 +83,7 @@ def gestures() -> tuple[str, ...]:
     return tuple(_plain())
 
 
-def plain_command(gesture: str, said: str) -> str:
+def plain_command(gesture: str, said: str, *, both_arms: bool = False) -> str:
     """The plain command of a gesture with the arm and the number of strokes that `said` names.
 
     Empty where the plain command cannot say what `said` does: a height, arms in turn, or an arm that the gesture does not have.
@@ -91,9 +91,10 @@ def plain_command(gesture: str, said: str) -> str:
     Args:
         gesture: one of `gestures`.
         said: a command, in any words.
+        both_arms: whether words that name no arm mean both: "make a muscle pose".
     """
     said = said.lower()
-    any_arm, one_arm, both_arms, in_turn = _plain()[gesture]
+    any_arm, one_arm, with_both, in_turn = _plain()[gesture]
     if (_ADDS if _IS_HIGH.search(any_arm) else _ADDS_OR_HIGH).search(said):
         return ""
     limbs = limbs_of(said)
@@ -110,7 +111,7 @@ def plain_command(gesture: str, said: str) -> str:
     elif side:
         command = one_arm.replace("{S}", side)
     else:
-        command = both_arms if limbs == ARMS and both_arms else any_arm
+        command = with_both if (limbs == ARMS or both_arms) and with_both else any_arm
     count = count_asked(said)
     return with_times(command, count) if command and count else command
 
@@ -170,15 +171,16 @@ def in_plain_words_of(command: PlainCommand, meant: Meant) -> PlainCommand:
     return command if is_known_phrase(command.text) else plainly_said(command, meant)
 
 
-def plainly_said(command: PlainCommand, meant: Meant, least: float = SURE) -> PlainCommand:
+def plainly_said(command: PlainCommand, meant: Meant, least: float = SURE, *, both_arms: bool = False) -> PlainCommand:
     """A command in plain words of the gesture that it means, if that is likely.
 
     Args:
         command: the command, be it a phrase of the corpus or not.
         meant: what it means.
         least: least probability of its gesture.
+        both_arms: whether a command that names no arm means both.
     """
-    return _said(command, _plain_words(meant, command.text, least))
+    return _said(command, _plain_words(meant, command.text, least, both_arms=both_arms))
 
 
 def without_unasked(reading: Reading, meant: Sequence[Meant]) -> Reading:
@@ -237,8 +239,9 @@ def is_sure_of(meant: Meant) -> bool:
     return meant.probability >= SURE and is_gesture(meant.name)
 
 
-def _plain_words(meant: Meant, said: str, least: float) -> str:
-    return plain_command(meant.name, said) if meant.probability >= least and is_gesture(meant.name) else ""
+def _plain_words(meant: Meant, said: str, least: float, *, both_arms: bool = False) -> str:
+    is_likely = meant.probability >= least and is_gesture(meant.name)
+    return plain_command(meant.name, said, both_arms=both_arms) if is_likely else ""
 
 
 def _said(command: PlainCommand, words: str) -> PlainCommand:
