@@ -135,9 +135,10 @@ def one_gesture() -> str:
             said = phrase.replace("{n}", "").replace("{D}", direction).replace("{S}", "left").replace("{N}", "three")
             said = mended(said)
             stems = stems_of(said)
-            if stems in parted or not (_is_parted(said) or _is_parted(gerund(said, None))):
-                continue
-            parted[stems] = said
+            forms = (said,) if said.startswith(("the ", "a ", "an ")) else (said, gerund(said, None))
+            divided = next(filter(_is_parted, forms), "")
+            if divided and stems not in parted:
+                parted[stems] = divided
     return "".join(f"{said}\n" for said in parted.values())
 
 

@@ -172,7 +172,7 @@ def in_plain_words_of(command: PlainCommand, meant: Meant) -> PlainCommand:
 
 
 def plainly_said(command: PlainCommand, meant: Meant, least: float = SURE, *, both_arms: bool = False) -> PlainCommand:
-    """A command in plain words of the gesture that it means, if that is likely.
+    """A command in plain words of the gesture that it means, if that is likely; a plain command stays: "box like a champion".
 
     Args:
         command: the command, be it a phrase of the corpus or not.
@@ -180,7 +180,8 @@ def plainly_said(command: PlainCommand, meant: Meant, least: float = SURE, *, bo
         least: least probability of its gesture.
         both_arms: whether a command that names no arm means both.
     """
-    return _said(command, _plain_words(meant, command.text, least, both_arms=both_arms))
+    words = "" if gesture_of(command.text) else _plain_words(meant, command.text, least, both_arms=both_arms)
+    return _said(command, words)
 
 
 def without_unasked(reading: Reading, meant: Sequence[Meant]) -> Reading:

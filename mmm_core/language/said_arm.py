@@ -91,16 +91,40 @@ def _speaks_of_both(sentence: str, gesture: str) -> bool:
 
 
 def without_denied_arm(reading: Reading) -> Reading:
-    """A reading; its one command has the other arm if it names one that the sentence denies ("point up w/o using the left")."""
+    """A reading; its one command has the other arm if it names one that the sentence denies ("point up w/o using the left").
+
+    Of a gesture that both arms do, at once or in turn, the one of the denied arm is left out: "the right rests, rub your left eye".
+    """
     sides = {side for words in reading.denied if (side := denied_side(words)) and _AN_ARM.search(words)}
-    if [len(step) for step in reading.steps] != [1] or len(sides) != 1:
+    if len(sides) != 1 or not reading.steps:
         return reading
-    (side,), (command,) = sides, reading.steps[0]
-    other = OTHER[side]
+    (side,) = sides
+    if sum(map(len, reading.steps)) > 1:
+        return _without_gestures_of(side, reading)
+    other, (command,) = OTHER[side], reading.steps[0]
     text = re.sub(rf"\b{side}(?= {_ARM_NOUN}\b)", other, command.text)
     if text == command.text or re.search(rf"\b{other}\b", command.text):
         return reading
     return replace(reading, steps=((replace(command, text=text, limbs=limbs_of(text)),),))
+
+
+def _without_gestures_of(side: str, reading: Reading) -> Reading:
+    """A reading without commands of an arm whose gesture another command does with the other arm."""
+    of_other = {
+        gesture_of(command.text)
+        for step in reading.steps
+        for command in step
+        if _is_of_arm(command.text, OTHER[side]) and not _is_of_arm(command.text, side)
+    } - {""}
+    steps = (
+        tuple(c for c in step if not (_is_of_arm(c.text, side) and gesture_of(c.text) in of_other))
+        for step in reading.steps
+    )
+    return replace(reading, steps=tuple(filter(None, steps)))
+
+
+def _is_of_arm(command: str, side: str) -> bool:
+    return re.search(rf"\b{side} {_ARM_NOUN}\b", command) is not None
 
 
 def arm_said(sentence: str) -> str:

@@ -14,9 +14,11 @@ from mmm_core.language.plain_gestures import (
     SURE_OF_ALL,
     SURELY_DENIED,
     Meant,
+    gesture_of,
     gestures,
     in_plain_words,
     plain_command,
+    plainly_said,
     without_denied_acts,
     without_unasked,
 )
@@ -67,6 +69,20 @@ def test_a_plain_command_is_read_as_itself() -> None:
 )
 def test_arm_and_number_are_kept_or_nothing_is_said(gesture: str, said: str, command: str) -> None:
     assert plain_command(gesture, said) == command
+
+
+def test_both_arms_of_words_that_name_none_are_kept() -> None:
+    assert plain_command("catch", "catch the ball and bring it to your chest") == "catch a ball"
+    assert (
+        plain_command("catch", "catch the ball and bring it to your chest", both_arms=True)
+        == "catch a ball with both hands"
+    )
+
+
+@pytest.mark.parametrize("said", ["throw hooks from both sides 6 times", "box like a champion", "flex your muscles"])
+def test_a_plain_command_stays(said: str) -> None:
+    """They name no arms that `plain_command` would find."""
+    assert plainly_said(PlainCommand(said), Meant(gesture_of(said), 1.0)).text == said
 
 
 def _words(reading: Reading) -> list[list[str]]:

@@ -92,6 +92,14 @@ def test_a_denied_arm_does_not_do_the_one_command(command: str, denied: tuple[st
     assert without_denied_arm(reading).steps == ((PlainCommand(done, limbs=limbs_of(done)),),)
 
 
+@pytest.mark.parametrize("at_once", [True, False])
+def test_of_a_gesture_of_both_arms_the_denied_one_is_left_out(at_once: bool) -> None:
+    """ "The right hand rests, clear your brow with your left" wiped with both."""
+    left, right = (PlainCommand(f"wipe your brow with your {side} hand") for side in ("left", "right"))
+    reading = Reading("", ((right, left),) if at_once else ((right,), (left,)), ("the right arm",))
+    assert without_denied_arm(reading).steps == ((left,),)
+
+
 def test_an_arm_that_one_of_several_commands_takes_stays() -> None:
     steps = tuple((PlainCommand(said, limbs=limbs_of(said)),) for said in ("wave your left hand", "bow politely"))
     reading = Reading("", steps, ("the left hand",))
