@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+import re
+
 import pytest
 
 from mmm_core.corpus.family_words import phrase_gestures
 from mmm_core.corpus.outside import OUTSIDE
+from mmm_core.corpus.plain_commands import plain_phrases
+from mmm_core.corpus.withheld import is_withheld
 from mmm_core.language.phrase_gestures import gesture_of_phrase, phrase_key
+from mmm_core.language.plain_gestures import gestures
 from mmm_core.language.word_tables import PHRASE_GESTURES_FILE
 
 
@@ -38,6 +43,18 @@ def test_nothing_outside_is_a_phrase() -> None:
     assert not [text for text in OUTSIDE if gesture_of_phrase(text)]
 
 
+@pytest.mark.long
 def test_the_file_is_that_of_the_corpus() -> None:
     """When this fails after phrases were changed: `python -m mmm_core.corpus.family_words`."""
     assert PHRASE_GESTURES_FILE.read_bytes() == phrase_gestures()
+
+
+def test_nearly_every_phrase_has_its_gesture_and_none_another() -> None:
+    """Of every 50th phrase; the others are shared by several gestures."""
+    found: list[tuple[str, str]] = []
+    for gesture in gestures():
+        family, _, direction = gesture.partition("/")
+        said = [p.replace("{D}", direction).replace("{S}", "left") for _, p in plain_phrases(family, direction)[::50]]
+        found += [(gesture, gesture_of_phrase(re.sub(r"{.}", "", p))) for p in said if not is_withheld(p)]
+    assert not [one for one in found if one[1] and one[0] != one[1]]
+    assert sum(one[1] != "" for one in found) > 0.75 * len(found) > 500

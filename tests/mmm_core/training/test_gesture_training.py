@@ -38,6 +38,7 @@ def _draw() -> Draw:
     return lambda: next(endless)
 
 
+@pytest.mark.long
 def test_it_learns_the_texts_it_is_given_and_is_read_back(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("mmm_core.training.gesture_training.BATCH", 12)
     path = tmp_path / "classifier.safetensors"

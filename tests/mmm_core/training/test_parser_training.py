@@ -61,6 +61,7 @@ def test_it_learns_the_sentences_it_is_given_and_is_read_back(tmp_path: Path, mo
     assert all(not p.requires_grad for p in trained.parameters())
 
 
+@pytest.mark.long
 def test_an_interrupted_run_gives_the_weights_of_one_that_was_not(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -83,6 +84,7 @@ def test_an_interrupted_run_gives_the_weights_of_one_that_was_not(
     assert all(torch.equal(x, y) for x, y in zip(whole.state_dict().values(), parts.state_dict().values(), strict=True))
 
 
+@pytest.mark.long
 def test_a_parser_that_learns_further_starts_from_the_given_one(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -99,6 +101,7 @@ def test_a_parser_that_learns_further_starts_from_the_given_one(
         torch.testing.assert_close(weights, given.state_dict()[name], rtol=0, atol=step / 2 + 2 * parser_training.RATE)
 
 
+@pytest.mark.long
 def test_the_batches_of_a_step_do_not_depend_on_what_was_drawn_before() -> None:
     rng = random.Random(5)
     draw = ParserTexts(rng).draw
