@@ -6,13 +6,14 @@ import math
 import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from itertools import chain
 
 from mmm_core.generate.encoded_sentence import Encoded
 from mmm_core.language.candidates import is_task
 from mmm_core.language.commands import Reading
 from mmm_core.language.completed_at_once import base_of
 from mmm_core.language.denial import is_denied_act, surely_denies
-from mmm_core.language.gesture_steps import is_all_gestures
+from mmm_core.language.gesture_steps import ANY_ARM, GestureSteps, is_all_gestures
 from mmm_core.language.limbs import is_gesture_verb
 from mmm_core.language.parsed_reading import reading_in, steps_asked
 from mmm_core.language.plain_gestures import Meant, alternates, family_of
@@ -54,7 +55,7 @@ def as_surely_parsed(
     answer = next(iter(states.parse.likeliest(1)), None)
     if answer is None or not is_all_gestures(answer) or states.parse.log_likelihoods([answer])[0] < LOG_SURE:
         return found
-    if contradicts_sides(answer, found.text):
+    if contradicts_sides(answer, found.text) or _is_vaguer(answer, own):
         return found
     asked = reading_in(answer, found.text, (found,), meant)
     if asked is None:
@@ -65,6 +66,13 @@ def as_surely_parsed(
     if len(found.denied) == 1 and any(_is_plainly_denied(words, found.text.lower()) for words in contrary):
         return found
     return replace(asked, denied=tuple(words for words in asked.denied if words not in contrary), plain=False)
+
+
+def _is_vaguer(answer: GestureSteps, than: GestureSteps) -> bool:
+    """Whether an answer has the same gestures and only leaves arms open: "bring the ball to your chest" takes both."""
+    pairs = [*zip(chain.from_iterable(answer), chain.from_iterable(than), strict=False)]
+    alike = all(said.gesture == one.gesture and said.arm in (ANY_ARM, one.arm) for said, one in pairs)
+    return alike and [*map(len, answer)] == [*map(len, than)]
 
 
 def _is_plainly_denied(denied: str, text: str) -> bool:

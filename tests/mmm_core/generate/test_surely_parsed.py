@@ -66,3 +66,11 @@ def test_number_and_manner_are_those_of_the_reading() -> None:
     ((command,),) = found.steps
     assert command.text == "clap three times"
     assert command.manner.tempo < 1
+
+
+@pytest.mark.parametrize(("text", "stays"), [("wave both hands", True), ("salute with your left hand", False)])
+def test_an_answer_that_only_leaves_the_arms_open_changes_nothing(text: str, stays: bool) -> None:
+    states: Any = SimpleNamespace(parse=_Parse({WAVE: 0.9}))
+    reading = read(text)
+    found = as_surely_parsed(reading, states, lambda commands: {said: Meant(said.split()[0], 1.0) for said in commands})
+    assert (found == reading) is stays
