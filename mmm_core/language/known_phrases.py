@@ -34,8 +34,8 @@ BESIDE = re.compile(
 _ARMS = frozenset("hand hands arm arms".split())
 _SAYS_NOTHING = frozenset(
     (
-        "a an the your my his her its their both one of left right please robot now do does doing perform performs "
-        "performing make makes making give gives giving show shows showing me us some with using time times"
+        "a an the your my his her its their both one of left right please robot now do does doing perform make give me us show "
+        "some with using time times"
     ).split()
 ) | {*NUMBERS, *ADVERBS}
 """Words that, like those for arms, a command may gain or lose without a change of its gesture."""

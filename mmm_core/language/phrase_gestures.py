@@ -6,6 +6,7 @@ phrase means both arms though it may name none. A phrase that goes to the left s
 
 from __future__ import annotations
 
+import re
 import zlib
 from array import array
 from bisect import bisect_left
@@ -20,6 +21,8 @@ from mmm_core.language.word_tables import PHRASE_GESTURES_FILE
 
 _FEWEST_LETTERS = 3
 """Number of letters of the words of a phrase: shorter ones ("go") stand in many sentences."""
+_SHOWS = re.compile(r"\b(?:perform|mak|giv|show)(?:s|es|ing)\b")
+"""Forms of verbs that say no gesture, as captions have them: "making a bow"."""
 _KEY_BYTES = 4
 
 
@@ -36,7 +39,8 @@ def phrase_key(text: str) -> int | None:
     >>> phrase_key("jive exactly 3 times") == phrase_key("jive in turn"), phrase_key("go")
     (True, None)
     """
-    said = " ".join(significant_words(BESIDE.sub(" ", IN_TURN.sub(" ", text.lower())), with_arms=True))
+    words = BESIDE.sub(" ", _SHOWS.sub(" ", IN_TURN.sub(" ", text.lower())))
+    said = " ".join(significant_words(words, with_arms=True))
     return zlib.crc32(said.encode()) if len(said) >= _FEWEST_LETTERS else None
 
 

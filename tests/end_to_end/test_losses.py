@@ -10,6 +10,7 @@ import pytest
 from daemon.client import CancelledByError, RefusedError
 from daemon.generator.generated import Generated
 from sim.faults import Fault
+from tests.support.harness import keeps_to_its_path
 from tests.support.kinematic import generate
 from tests.support.robot_states import SharedDaemon, assert_works, within
 
@@ -35,7 +36,7 @@ def test_lost_and_broken_replies_change_nothing_that_people_see(shared: SharedDa
     shared.servos.suffer(Fault("drop", probability=0.01))
     with shared.client() as client:
         client.arm()
-        assert client.say("wave").done.gate_clipped_frames == 0
+        assert keeps_to_its_path(client.say("wave").done)
         assert client.status().state != "fault"
     assert shared.servos.bus.faults.struck["drop"]
 
