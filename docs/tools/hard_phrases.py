@@ -22,6 +22,7 @@ from typing import NamedTuple
 from rich.progress import track
 
 from mmm_core.corpus.families import FAMILIES, Gesture
+from mmm_core.corpus.family_words import as_read
 from mmm_core.corpus.outside import OUTSIDE
 from mmm_core.corpus.plain_commands import plain_phrases
 from mmm_core.corpus.withheld import is_withheld
@@ -29,7 +30,6 @@ from mmm_core.evaluation.fidelity import cases_of, counting_checks, faults_of
 from mmm_core.generate.engine import Engine
 from mmm_core.language.hard_phrases import said_of, to_said_side
 from mmm_core.language.plain_gestures import gestures, plain_command, sides_of
-from mmm_core.language.reading import read
 from mmm_core.language.word_tables import HARD_PHRASES_FILE
 
 SEED = 7
@@ -116,12 +116,6 @@ def _lines(hard: dict[str, list[str]]) -> list[str]:
             if len(meanings[said_of(words)]) == 1 and said_of(words) not in refused and is_found:
                 kept[said_of(words)] = f"{gesture} => {words}"
     return [line for said, line in kept.items() if said]
-
-
-def as_read(phrase: str) -> str:
-    """The command that the rules read in a phrase; empty where they read several."""
-    steps = read(phrase).steps
-    return steps[0][0].text if [len(step) for step in steps] == [1] else ""
 
 
 if __name__ == "__main__":

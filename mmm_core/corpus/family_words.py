@@ -162,7 +162,7 @@ def phrase_gestures() -> bytes:
     they mean what that one does.
     """
     meanings: defaultdict[int | None, set[tuple[str, str]]] = defaultdict(set)
-    as_read: defaultdict[int | None, set[tuple[str, str]]] = defaultdict(set)
+    of_rules: defaultdict[int | None, set[tuple[str, str]]] = defaultdict(set)
     for gesture in gestures():
         if "right" in sides_of(gesture):
             continue  # its phrases are those of the mirror image
@@ -172,17 +172,17 @@ def phrase_gestures() -> bytes:
                 continue
             said = phrase.replace("{D}", direction).replace("{N}", "three").replace("{S}", "left").replace("{n}", "")
             meanings[phrase_key(said)].add((gesture, row))
-            as_read[phrase_key(_one_command(said))].add((gesture, row))
+            of_rules[phrase_key(as_read(said))].add((gesture, row))
     outside = {None, *map(phrase_key, OUTSIDE)}
     of_one: dict[int, PhraseMeaning] = {}
-    for key, found in (as_read | meanings).items():
+    for key, found in (of_rules | meanings).items():
         if key is not None and key not in outside and len({gesture for gesture, _ in found}) == 1:
             of_one[key] = PhraseMeaning(min(found)[0], {row for _, row in found} == {"both"})
     return packed(of_one)
 
 
-def _one_command(phrase: str) -> str:
-    """The command that the rules read in a phrase; empty where they read several, or none."""
+def as_read(phrase: str) -> str:
+    """The command that the rules read in a phrase; empty where they read several or none."""
     steps = read(" ".join(phrase.split())).steps
     return steps[0][0].text if [len(step) for step in steps] == [1] else ""
 

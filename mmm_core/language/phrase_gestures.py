@@ -27,7 +27,12 @@ _KEY_BYTES = 4
 
 
 class PhraseMeaning(NamedTuple):
-    """What a phrase of the corpus means: its gesture, to the left where it has a side, and whether it means both arms."""
+    """The meaning of a phrase of the corpus.
+
+    Attributes:
+        gesture: its gesture; of a gesture that goes to a side, the one to the left.
+        both_arms: whether it means both arms.
+    """
 
     gesture: str
     both_arms: bool

@@ -38,7 +38,7 @@ def test_as_many_strokes_are_counted_as_are_performed(name: str, n: int) -> None
 
 @pytest.mark.parametrize("every", few_and_long([4], [1]))
 def test_nearly_all_families_are_counted_within_one_and_most_exactly(every: int) -> None:
-    """Of every fourth family, and at length of all."""
+    """The default suite counts every fourth family, the long one counts all."""
     found = {name: _counted(name, 3, 70) for name in _WITH_STROKES[::every]}
     assert {name for name, n in found.items() if n is None or abs(n - 3) > 1} == set()
     assert sum(n == 3 for n in found.values()) > 0.85 * len(found)

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from docs.tools.hard_phrases import as_read, phrases_of
+from docs.tools.hard_phrases import phrases_of
+from mmm_core.corpus.family_words import as_read
 from mmm_core.language.commands import Reading
 from mmm_core.language.hard_phrases import said_of, without_hard_phrases
 from mmm_core.language.mirroring import mirror_words
@@ -26,7 +27,7 @@ def said(text: str) -> list[list[str]]:
 
 @pytest.mark.parametrize("every", few_and_long([25], [1]))
 def test_each_hard_phrase_is_of_its_gesture_and_has_a_plain_command(every: int) -> None:
-    """Of every 25th gesture, and at length of all."""
+    """The default suite checks the phrases of every 25th gesture, the long one checks all."""
     assert len(TABLE) > 100
     assert {gesture for gesture, _ in TABLE} <= {*gestures()}
     for gesture in sorted({gesture for gesture, _ in TABLE})[::every]:

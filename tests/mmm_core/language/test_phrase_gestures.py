@@ -50,7 +50,7 @@ def test_the_file_is_that_of_the_corpus() -> None:
 
 
 def test_nearly_every_phrase_has_its_gesture_and_none_another() -> None:
-    """Of every 50th phrase; the others are shared by several gestures."""
+    """The test takes every 50th phrase. A phrase without a gesture is one that several gestures share."""
     found: list[tuple[str, str]] = []
     for gesture in gestures():
         family, _, direction = gesture.partition("/")
