@@ -59,9 +59,13 @@ def significant_words(text: str, *, with_arms: bool = False) -> list[str]:
 
 def is_known_phrase(text: str) -> bool:
     """Whether the significant words of a text are those of a phrase of the corpus."""
-    key, known = key_of(text), _known()
-    at = bisect_left(known, key) if key is not None else len(known)
-    return at < len(known) and known[at] == key
+    return place_among(_known(), key_of(text)) is not None
+
+
+def place_among(hashes: array[int], key: int | None) -> int | None:
+    """The index of `key` among ascending hashes; None where it is not one of them."""
+    at = bisect_left(hashes, key) if key is not None else len(hashes)
+    return at if at < len(hashes) and hashes[at] == key else None
 
 
 @cache

@@ -9,13 +9,12 @@ from __future__ import annotations
 import re
 import zlib
 from array import array
-from bisect import bisect_left
 from collections.abc import Mapping
 from functools import cache
 from typing import NamedTuple
 
 from mmm_core.language.hard_phrases import to_said_side
-from mmm_core.language.known_phrases import BESIDE, significant_words
+from mmm_core.language.known_phrases import BESIDE, place_among, significant_words
 from mmm_core.language.plain_gestures import IN_TURN, gestures
 from mmm_core.language.word_tables import PHRASE_GESTURES_FILE
 
@@ -84,9 +83,9 @@ def packed(meanings: Mapping[int, PhraseMeaning]) -> bytes:
 
 
 def _meaning_of(text: str) -> PhraseMeaning | None:
-    key, (keys, numbers, both) = phrase_key(text), _known()
-    at = bisect_left(keys, key) if key is not None else len(keys)
-    return PhraseMeaning(gestures()[numbers[at]], bool(both[at])) if at < len(keys) and keys[at] == key else None
+    keys, numbers, both = _known()
+    at = place_among(keys, phrase_key(text))
+    return None if at is None else PhraseMeaning(gestures()[numbers[at]], bool(both[at]))
 
 
 @cache
