@@ -79,6 +79,11 @@ class BusStateMachine:
 
     def serve(self, request: BusRequest) -> None:
         """Carry out a request as far as the state allows; the control loop serves a shutdown request itself."""
+        if request is BusRequest.STOP:
+            self._front.stopped(self._clock.now_s())
+        self._carry_out(request)
+
+    def _carry_out(self, request: BusRequest) -> None:
         log.info("request %s in %s", request.name, self.state.name)
         if request in ESTOPS:
             self._link.set_text("")
@@ -140,11 +145,11 @@ class BusStateMachine:
     def watch_front(self, *, watched: bool) -> None:
         """Hold, park or go limp when the front is silent, if the robot has torque and `watched` is true."""
         has_torque = self.torque.on or self._arming is not None or self.torque.may_hold
-        loss = self._front.step(self.state, watched=watched and has_torque)
+        loss = self._front.step(self.state, self._clock.now_s(), watched=watched and has_torque)
         if loss is FrontLoss.HOLD:
-            self.serve(BusRequest.STOP)
+            self._carry_out(BusRequest.STOP)
         elif loss is FrontLoss.PARK:
-            self.serve(BusRequest.PARK)
+            self._carry_out(BusRequest.PARK)
         elif loss is FrontLoss.LIMP:
             self.cut_torque()
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import gc
 import logging
+from contextlib import suppress
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,6 +23,7 @@ from daemon.control.point_to_point import PointToPointMove
 from daemon.control.safety_limiter import SafetyLimiter
 from daemon.control.time_scaling import ScaledSetpoints, TimeScaling
 from daemon.control.torque_ramp import TorqueRamp
+from daemon.control.torque_switch import TORQUE_OFF_REPEATS
 from daemon.control.turns import TurnWatch
 from daemon.dynamixel.reading import BusReading
 from daemon.dynamixel.servo_bus import ServoBus
@@ -37,6 +39,8 @@ log = logging.getLogger(__name__)
 
 LOOK_S = 0.002
 """Seconds between two polls for an e-stop while the loop waits for its next cycle."""
+ASKED_AT_END = 3
+"""Number of times at most that a servo is asked at the end of the loop whether it has torque."""
 
 
 class ControlLoop:
@@ -92,7 +96,26 @@ class ControlLoop:
                 due_s = now_s
             self.cycle()
             due_s = self._waited_until(due_s + self._period_s)
+        self._end()
+
+    def _end(self) -> None:
+        """Cut torque, repeat that as cycles do, then ask each servo, and cut again where one has torque or does not answer."""
         self._states.cut_torque()
+        due_s = self._clock.now_s()
+        for _ in range(TORQUE_OFF_REPEATS):
+            due_s += self._period_s
+            self._clock.sleep_until(due_s)
+            with suppress(LinkError, ServoFaultError):
+                self._torque.repeat_off()
+                self._bus.exchange(None)
+        left = list(self._bus.ids)
+        for _ in range(ASKED_AT_END):
+            with suppress(LinkError, ServoFaultError):
+                left = [servo_id for servo_id in left if self._bus.poll_item(servo_id, "torque_enable") != 0]
+                if not left:
+                    return
+                self._bus.send_torque_off()
+        log.error("servo %s may still have torque: it did not say that it has none", ", ".join(map(str, left)))
 
     @property
     def state(self) -> BusState:

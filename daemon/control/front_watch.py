@@ -12,7 +12,7 @@ log = logging.getLogger(__name__)
 HEARTBEAT_LOST_S = 0.5
 """Seconds without a heartbeat of the front after which the robot decelerates and holds."""
 PARK_AFTER_S = 5.0
-"""Seconds without a heartbeat of the front after which the robot parks and goes limp."""
+"""Seconds without a heartbeat of the front, and since the last stop, after which the robot parks and goes limp."""
 FAULT_LIMP_S = 10.0
 """Seconds without a heartbeat of the front after which servos with torque in a fault or e-stop go limp: no operator can reset them.
 """
@@ -36,8 +36,13 @@ class FrontWatch:
     def __init__(self, link: BusLink) -> None:
         self._link = link
         self._is_lost = False
+        self._stopped_s = float("-inf")
 
-    def step(self, state: BusState, *, watched: bool) -> FrontLoss | None:
+    def stopped(self, now_s: float) -> None:
+        """Take note of a stop that was asked for: the robot holds for a while before it parks."""
+        self._stopped_s = now_s
+
+    def step(self, state: BusState, now_s: float, *, watched: bool) -> FrontLoss | None:
         """The reaction due in this cycle; None for no reaction, where `watched` is false, and while the robot parks."""
         if not watched or state is BusState.PARKING:
             self._is_lost = False
@@ -52,6 +57,8 @@ class FrontWatch:
             self._is_lost = False
             return None
         if age_s > PARK_AFTER_S:
+            if now_s - self._stopped_s <= PARK_AFTER_S:
+                return None
             log.warning("front silent for %.1f s: parking", age_s)
             return FrontLoss.PARK
         if self._is_lost:

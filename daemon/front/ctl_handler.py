@@ -183,12 +183,13 @@ class CtlHandler:
                 raise CommandRefusedError(state, Trigger.RESET, (), do)
         elif isinstance(request, Arm | Torque):
             self._machine.check(Trigger.ARM)
-            self._machine.armed_by_person()
             kind = BusRequest.ARM
         else:
             raise TypeError(f"no answer to {type(request).__name__}")
         if self._link.overtaken(self._link.request(kind, number=number)):
             return _overtaken(request)
+        if kind is BusRequest.ARM:
+            self._machine.armed_by_person()
         return Ack(id=request.id, verb=tag_of(request), state=state.value)
 
     def _answer(self, number: int, request: CtlRequest, decide: Callable[[], Event]) -> None:

@@ -48,6 +48,8 @@ log = logging.getLogger(__name__)
 
 DRAIN_LIMIT = 10_000
 PARK_AGAIN_S = 1.0
+HELD_S = 5.0
+"""Seconds that the robot holds when it is stopped while it parks at the daemon's end, before it parks again."""
 HEALTH_EVERY_S = 1.0
 STREAM_PAUSE_S = 0.001
 """Seconds between two readings of `stream`; of the targets that one sender sends meanwhile, the newest counts."""
@@ -149,23 +151,33 @@ class Front:
             task.result()
 
     async def park(self) -> RobotState:
-        """End all commands and park, as far as the robot's state allows; returns the state in which the robot is left."""
+        """End all commands and park, as far as the robot's state allows; returns the state in which the robot is left.
+
+        A robot that is stopped meanwhile holds for `HELD_S`, then parks again.
+        """
         self.performer.end_all("shutdown")
         state = self.machine.state
         if state in (RobotState.LIMP, RobotState.FAULT, RobotState.ESTOP) or not self.follower.bus_alive:
             return state
         end_s = time.monotonic() + self._config.park_timeout_s
-        asked_s = float("-inf")
+        asked_s = held_until_s = float("-inf")
+        self.follower.stopped = False
         ticking = next((t for t in self._tasks if t.get_name() == self._tick_forever.__name__), None)
         while time.monotonic() < end_s:
             if ticking is None or ticking.done():  # the ticking task failed, which is why the robot is to be parked
                 self.performer.tick()
             if self.machine.state in (RobotState.LIMP, RobotState.FAULT, RobotState.ESTOP):
                 return self.machine.state
+            now_s = time.monotonic()
             parking = self.machine.state is RobotState.PARKING and asked_s > 0  # an earlier parking may stay there
-            if not parking and time.monotonic() - asked_s > PARK_AGAIN_S:
+            if self.follower.stopped and held_until_s < asked_s:
+                log.warning("stopped while it parks: the robot holds for %g s, then parks again", HELD_S)
+                held_until_s = now_s + HELD_S
+                end_s = max(end_s, held_until_s + self._config.park_timeout_s / 2)
+            elif not parking and now_s - asked_s > PARK_AGAIN_S and now_s > held_until_s:
+                self.follower.stopped = False
                 self.link.request(BusRequest.PARK)
-                asked_s = time.monotonic()
+                asked_s = now_s
             await asyncio.sleep(TICK_S)
         log.error("the robot did not park in %g s; it is in %s", self._config.park_timeout_s, self.machine.state.value)
         return self.machine.state
@@ -195,9 +207,9 @@ class Front:
         while True:
             newest: dict[int, list[bytes]] = {}
             message: Message | None = await self._stream_inbox.receive()
-            for _ in range(MOST_TARGETS):
+            for n in range(1, MOST_TARGETS + 1):
                 newest[message.fd] = message.parts
-                message = await self._stream_inbox.waiting()
+                message = await self._stream_inbox.waiting() if n < MOST_TARGETS else None
                 if message is None:
                     break
             for parts in newest.values():

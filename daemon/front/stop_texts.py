@@ -2,17 +2,11 @@
 
 from __future__ import annotations
 
-import re
-
 from daemon.wire.codec import WireError, decode_cmd
 from daemon.wire.requests import Command
-from mmm_core.language.stop_words import means_stop
+from mmm_core.language.stop_words import may_stop, means_stop
 
 _LONGEST_FRAME_BYTES = 600
-_HINT = re.compile(
-    rb"stop|stp|halt|freez|cancel|abort|still|mov|pause|quit|wait|enough|emergency|cease|arr|alt|basta", re.IGNORECASE
-)
-"""A frame without any of these words is not read any further: a flood must cost little."""
 
 
 def asks_to_stop(request: Command) -> bool:
@@ -22,8 +16,8 @@ def asks_to_stop(request: Command) -> bool:
 
 def stops(frames: list[bytes]) -> bool:
     """Whether the frames are one request that means to stop; checked for a client above its rate limit."""
-    if len(frames) != 1 or len(frames[0]) > _LONGEST_FRAME_BYTES or not _HINT.search(frames[0]):
-        return False
+    if len(frames) != 1 or len(frames[0]) > _LONGEST_FRAME_BYTES or not may_stop(frames[0]):
+        return False  # not read any further: a flood must cost little
     try:
         request = decode_cmd(frames[0])
     except WireError:

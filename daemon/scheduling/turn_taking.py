@@ -98,8 +98,9 @@ class TurnTaking:
         machine = self._follower.machine
         machine.check(Trigger.SAY)
         if not self._follower.can_take_over:
-            if machine.state is RobotState.LIMP:
-                self._link.request(BusRequest.ARM)
+            while machine.state is RobotState.LIMP and not self._has_asked_to_arm():
+                await self._clock.sleep(TICK_S)
+                machine.check(Trigger.SAY)
             if machine.state in (RobotState.LIMP, RobotState.ARMING):
                 tell()
         asked_s = self._clock.now_s()
@@ -112,6 +113,14 @@ class TurnTaking:
             machine.check(Trigger.SAY)
         if self._clock.now_s() > entry.deadline_s:
             raise too_late(entry, "its turn came too late")
+
+    def _has_asked_to_arm(self) -> bool:
+        """Ask to arm, but after a halt that the front has not been told about yet: it ends this command first."""
+        number = self._link.new_number()  # before the look at the halts, so that a halt after it makes the request void
+        if self._link.epochs.unknown_halts:
+            return False
+        self._link.request(BusRequest.ARM, number=number)
+        return True
 
     async def give_way(self, pending: QueuedCommand) -> None:
         """Wait a moment for a newer command that may soon take over, so that the robot does not start two motions."""

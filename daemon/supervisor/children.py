@@ -12,6 +12,7 @@ from collections import deque
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
+from daemon.errors import DaemonError
 from daemon.host.cores import on_all_cores
 from daemon.host.parent import PARENT_VARIABLE
 from daemon.host.worker_threads import WORKER_THREADS
@@ -21,6 +22,10 @@ log = logging.getLogger(__name__)
 FIRST_BACK_OFF_S, LONGEST_BACK_OFF_S = 0.5, 30.0
 GOOD_LIFE_S = 2.0
 """Seconds after which a start counts as successful: the wait before the next start is short again."""
+
+
+class ChildStartError(DaemonError):
+    """The system could not start a process: too many processes or open files, or too little memory."""
 
 
 class BackOff:
@@ -108,17 +113,24 @@ class Child:
             self._arguments.append(argument)
 
     async def start(self, pass_fds: Sequence[int] = ()) -> None:
-        """Start the process, or start it again; it inherits the descriptors `pass_fds`."""
+        """Start the process, or start it again; it inherits the descriptors `pass_fds`.
+
+        Raises:
+            ChildStartError: the system has no room for another process now.
+        """
         environment = {**os.environ, **WORKER_THREADS, **self._environment}
         environment[PARENT_VARIABLE] = str(os.getpid())
         self.said.clear()
         self._started_s = self._ran_s = time.monotonic()
-        with on_all_cores():
-            self._process = await asyncio.create_subprocess_exec(
-                sys.executable, "-m", self._module, *self._arguments,
-                stdin=asyncio.subprocess.DEVNULL, stderr=asyncio.subprocess.PIPE if self._follow else None, env=environment,
-                start_new_session=True, pass_fds=pass_fds,
-            )  # fmt: skip
+        try:
+            with on_all_cores():
+                self._process = await asyncio.create_subprocess_exec(
+                    sys.executable, "-m", self._module, *self._arguments,
+                    stdin=asyncio.subprocess.DEVNULL, stderr=asyncio.subprocess.PIPE if self._follow else None, env=environment,
+                    start_new_session=True, pass_fds=pass_fds,
+                )  # fmt: skip
+        except OSError as error:
+            raise ChildStartError(f"the {self.name} cannot be started: {error.strerror or error}") from error
         if self._follow:
             self._forward = asyncio.create_task(self._forward_stderr(self._process))
 

@@ -59,6 +59,14 @@ _ACTIVITY = re.compile(
 _NO_ACTIVITIES = frozenset(
     ("anything", "everything", "king", "nothing", "ring", "something", "string", "thing", "wing", "sling")
 )
+_NEEDED = {*_STOP_WORDS, *(max(phrase.split(), key=len) for phrase in _STOP_PHRASES), "more"}
+"""Words of which every text that stops has one: those that stop, the longest one of each phrase, and that of "no more waving"."""
+_MAY_STOP = re.compile(
+    "|".join(
+        [r"[^\x00-\x7f]|\\u|don\W?t", *("".join(f"{letter}+" for letter in word) for word in sorted(_NEEDED))]
+    ).encode(),
+    re.IGNORECASE,
+)
 _STAYS = frozenset(("stay", "see", "rest", "there", "here"))
 """Words after a stop that are no command: "stop and stay"."""
 _STOP_FIRST = re.compile(
@@ -83,6 +91,15 @@ def means_stop(text: str) -> bool:
     return any(word in _STOP_WORDS for word in rest) and all(
         word in _STOP_WORDS or word in _COURTESY or word in _MOTIONS for word in rest
     )
+
+
+def may_stop(request: bytes) -> bool:
+    """Whether a text in these bytes may mean stopping: false for most others, and much sooner than `means_stop`.
+
+    >>> may_stop(b"STOOOP!"), may_stop(b"don't do that"), may_stop(b"wave your hand")
+    (True, True, False)
+    """
+    return _MAY_STOP.search(request) is not None
 
 
 def after_a_stop(text: str) -> str:

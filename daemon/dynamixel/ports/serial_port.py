@@ -158,7 +158,13 @@ def _open(device: str, baud: int, url: str) -> serial.Serial:
         raise PortError(url, str(error), "check cable and path: ls -l /dev/serial/by-id/") from error
     except (ValueError, OverflowError) as error:
         raise PortBaudError(url, f"baud {baud} is not possible ({error})", f"allowed: {_USUAL}") from error
-    speed = tty_speed(port.fileno())
+    except (OSError, termios.error) as error:  # an adapter that is lost again while it is set up
+        raise PortError(url, str(error), "check cable and path: ls -l /dev/serial/by-id/") from error
+    try:
+        speed = tty_speed(port.fileno())
+    except (OSError, termios.error) as error:
+        port.close()
+        raise PortError(url, str(error), "check cable and path: ls -l /dev/serial/by-id/") from error
     if speed is not None and abs(speed - baud) > _MOST_OFF_SHARE * baud:
         port.close()
         raise PortBaudError(url, f"baud {baud} is not possible (the port went to {speed})", f"allowed: {_USUAL}")

@@ -1,12 +1,14 @@
 """Faults at the servos, on the wire and in the front: each is named, and the robot stands or goes limp."""
 
 import itertools
+from contextlib import closing
 
 import pytest
 
 from daemon.control.front_watch import HEARTBEAT_LOST_S, PARK_AFTER_S
 from daemon.shared_memory import bus_link as shared
-from daemon.shared_memory.bus_link import BusRequest, BusState
+from daemon.shared_memory.bus_link import BusLink, BusRequest, BusState
+from daemon.shared_memory.request_words import Asker
 from retarget.robot.loading import load_robot
 from sim.faults import Fault
 from tests.support.rig import rig, swing
@@ -143,4 +145,28 @@ def test_a_stall_longer_than_the_servos_watchdog_is_a_fault():
         r.link.request(BusRequest.RESET)
         r.cycle(2)
         r.arm()
+        r.assert_limits_kept()
+
+
+def test_a_stop_while_an_orphan_parks_holds_it_for_a_while(monkeypatch):
+    """The park was begun again in the cycle of the stop, which was answered as carried out."""
+    with rig(watch_front=True) as r, closing(BusLink.attach(r.link.path, r.robot.n_joints, asker=Asker.CTL)) as ctl:
+        age_s = 0.0
+        monkeypatch.setattr(type(r.link), "heartbeat_age_s", property(lambda _: age_s))
+        r.arm()
+        r.push(swing(r.robot, 2.0))
+        r.cycle(30)
+        age_s = PARK_AFTER_S + 0.1
+        r.until(BusState.PARKING)
+        r.cycle(20)
+        ctl.request(BusRequest.STOP)
+        stopped_s, first = r.clock.now_s(), len(r.records)
+        r.cycle()
+        assert r.state in (BusState.STOPPING, BusState.HOLDING)
+        r.until(BusState.PARKING)
+        assert r.clock.now_s() - stopped_s == pytest.approx(PARK_AFTER_S, abs=0.1)
+        assert all(r.torque)
+        r.until(BusState.LIMP)
+        states = [BusState(int(x["state"])).name for x in r.records[first:]]
+        assert [k for k, _ in itertools.groupby(states)] == ["STOPPING", "HOLDING", "PARKING", "LIMP"]
         r.assert_limits_kept()

@@ -6,6 +6,7 @@ import pytest
 from daemon.control.front_watch import FAULT_LIMP_S
 from daemon.control.torque_switch import TORQUE_OFF_REPEATS
 from daemon.shared_memory.bus_link import BusRequest, BusState
+from retarget.robot.loading import list_robots
 from sim.faults import Fault
 from tests.support.rig import assert_brakes_within_limits, lead_to, rig, swing
 from tests.support.sizes import few_and_long
@@ -178,3 +179,37 @@ def test_a_servo_that_heard_no_torque_off_is_told_again_when_it_hears(request_):
         r.cycle(700)
         assert not any(r.torque), "it is limp once it hears again"
         r.assert_limits_kept()
+
+
+@pytest.mark.parametrize("before", few_and_long(["fault"], ["estop", "limp"]))
+def test_the_end_of_the_process_leaves_no_servo_with_torque(before):
+    """One packet, or three, were sent at the end: a servo that was deaf meanwhile kept its torque, with no process left."""
+    deaf = Fault("deaf", start_s=100.0, end_s=100.06, servo_id=5)
+    with rig("reference", deaf) as r:
+        r.arm()
+        r.clock.sleep_until(100.0)
+        if before == "fault":
+            r.link.request(BusRequest.FAULT)
+        else:
+            r.link.request(BusRequest.ESTOP if before == "estop" else BusRequest.TORQUE_OFF)
+        r.link.request(BusRequest.SHUTDOWN)
+        r.streamer.run()
+        assert not any(r.torque)
+
+
+@pytest.mark.parametrize("name", few_and_long(["op3"], list_robots()))
+def test_at_the_end_each_servo_says_that_it_has_no_torque(name, caplog):
+    with rig(name) as r:
+        r.arm()
+        r.link.request(BusRequest.SHUTDOWN)
+        r.streamer.run()
+        assert not any(r.torque) and not [x for x in caplog.records if x.levelname == "ERROR"]
+
+
+def test_a_servo_that_keeps_its_torque_at_the_end_is_named(caplog):
+    with rig("reference", Fault("deaf", start_s=100.0, servo_id=5)) as r:
+        r.arm()
+        r.clock.sleep_until(100.0)
+        r.link.request(BusRequest.SHUTDOWN)
+        r.streamer.run()
+        assert sum(r.torque) == 1 and "servo 5 may still have torque" in caplog.text

@@ -128,3 +128,16 @@ def test_what_its_sender_was_told_that_nobody_serves_is_not_served_late():
         assert front.answer() is None and front.ctl.take_request() is None
 
     run(test, RobotState.LIMP)
+
+
+def test_an_arm_that_a_stop_overtook_does_not_let_texts_arm_again() -> None:
+    async def test(front: Front) -> None:
+        front.machine.limp_by_person()
+        number = front.ctl.new_number()
+        front.halted("stop", told=False)
+        front.handed("arm", number)
+        front.desk.take_waiting()
+        await soon()
+        assert front.machine.must_arm
+
+    run(test, RobotState.LIMP)

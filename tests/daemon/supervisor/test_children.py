@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import asyncio
+import errno
 import os
 import signal
+from typing import Any
 
 import pytest
 
-from daemon.supervisor.children import Child
+from daemon.supervisor.children import Child, ChildStartError
+from daemon.supervisor.side_processes import keep_web_server
 
 
 @pytest.mark.skipif(not os.path.isdir("/proc/self"), reason="this system has no /proc")
@@ -31,3 +34,28 @@ def test_only_a_stopped_process_is_called_stopped() -> None:
             await child.ended()
 
     asyncio.run(asyncio.wait_for(look(), 60.0))
+
+
+def test_a_process_that_the_system_has_no_room_for_is_started_later(monkeypatch: pytest.MonkeyPatch) -> None:
+    """One `EAGAIN` ended the task that keeps a process, without a word."""
+    spawn, refused = asyncio.create_subprocess_exec, [BlockingIOError(errno.EAGAIN, os.strerror(errno.EAGAIN))] * 2
+
+    async def spawn_later(*arguments: str, **how: Any) -> asyncio.subprocess.Process:
+        if refused:
+            raise refused.pop()
+        return await spawn(*arguments, **how)
+
+    async def start() -> None:
+        monkeypatch.setattr(asyncio, "create_subprocess_exec", spawn_later)
+        child = Child("web server", "timeit", ["-n1", "-r1", "import time; time.sleep(60)"], {})
+        with pytest.raises(ChildStartError, match="the web server cannot be started: Resource temporarily unavailable"):
+            await child.start()
+        keeping = asyncio.create_task(keep_web_server(child))
+        while not child.running:
+            assert not keeping.done()
+            await asyncio.sleep(0.01)
+        keeping.cancel()
+        child.kill()
+        await child.ended()
+
+    asyncio.run(asyncio.wait_for(start(), 60.0))

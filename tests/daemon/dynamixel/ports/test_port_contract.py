@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import termios
 import threading
 import time
 from collections.abc import Callable, Iterator
@@ -10,6 +11,7 @@ from pathlib import Path
 from urllib.parse import urlsplit
 
 import pytest
+import serial
 from dynamixel_sdk import GroupSyncRead, GroupSyncWrite, PacketHandler, PortHandler
 
 from daemon.dynamixel.codec import packet
@@ -188,4 +190,22 @@ def test_a_bus_url_that_means_nothing_is_refused_with_what_is_allowed(url: str, 
 def test_the_robots_own_baud_is_taken_when_the_url_names_none(tty: Path) -> None:
     port = open_dxl(urlsplit(f"dxl://{tty}"), PortContext(ROBOT, RealClock()))
     assert port.baud == 2_000_000
+    port.close()
+
+
+@pytest.mark.parametrize("lost", ["_update_dtr_state", "_reconfigure_port", "_reset_input_buffer"])
+@pytest.mark.parametrize("error", [OSError(5, "Input/output error"), termios.error(5, "Input/output error")])
+def test_an_adapter_that_is_lost_while_it_is_opened_is_a_lost_port(
+    tty: Path, monkeypatch: pytest.MonkeyPatch, lost: str, error: Exception
+) -> None:
+    port = SerialPort(str(tty), BAUD)
+
+    def fail(*_: object, **__: object) -> None:
+        raise error
+
+    with monkeypatch.context() as patch:
+        patch.setattr(serial.Serial, lost, fail)
+        with pytest.raises(LinkLostError, match="Input/output error"):
+            port.reopen()
+    port.reopen()
     port.close()
