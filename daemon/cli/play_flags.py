@@ -118,7 +118,7 @@ def _watched(request: Play, at: Connection, *, wait: bool, json: bool) -> int:
                     sys.stderr.write(f"mmmd: {event.message}\n")
                 status = exit_status(event)
             elif isinstance(event, Cancelled):
-                status = 1
+                status = 3 if event.by in ("estop", "fault") else 1
             if not wait and isinstance(event, Accepted):
                 break
     return status

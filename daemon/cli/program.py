@@ -9,7 +9,6 @@ from __future__ import annotations
 import contextlib
 import difflib
 import importlib
-import importlib.metadata
 import io
 import os
 import signal
@@ -113,7 +112,9 @@ def _answer(name: str = "", *arguments: str) -> int:
             _out(_found())
         return GOOD if name else BAD_USE
     if name in ("-V", "--version"):
-        _out(f"mmmd {importlib.metadata.version('mmmd')}")
+        from importlib.metadata import version  # takes a tenth of a second, in which Ctrl-C would print a traceback
+
+        _out(f"mmmd {version('mmmd')}")
         return GOOD
     like = difflib.get_close_matches(name, COMMANDS, 2, 0.5)
     meant = f"did you mean {' or '.join(like)}? " if like else ""
@@ -135,7 +136,9 @@ def _guarded(name: str, arguments: Sequence[str]) -> int:
     except SystemExit as stop:  # argument parsing: 0 after --help, 2 after bad use
         return stop.code if isinstance(stop.code, int) else BAD_USE
     except KeyboardInterrupt:
-        return _failed("interrupted", FAILED)
+        from daemon.cli.play_flags import INTERRUPTED
+
+        return _failed("interrupted", INTERRUPTED)
     except BrokenPipeError:
         raise
     except Exception as error:  # no traceback reaches a person
@@ -192,6 +195,8 @@ def _explain(error: Exception) -> int:
     bad_use = isinstance(error, (CommandError, ConfigError, UnknownRobotError, *wrong_files)) or _names_no_file(error)
     if isinstance(error, (DaemonError, MmmError, RetargetError)):
         return _failed(str(error), int(getattr(error, "exit_status", BAD_USE if bad_use else FAILED)))
+    if isinstance(error, UnicodeEncodeError):
+        return _failed("a text on the command line is not UTF-8; type it anew", BAD_USE)
     if isinstance(error, OSError):
         return _failed(str(error), BAD_USE if bad_use else FAILED)
     return _failed(f"internal error ({type(error).__name__}: {error}); MMMD_DEBUG=1 shows where", FAILED)

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import math
 import time
 from dataclasses import dataclass
 
-from daemon.errors import DaemonError
+import msgspec
+
+from daemon.errors import CommandError, DaemonError
 from daemon.host.clock import clock_id
 from daemon.wire.event_base import Event
 from daemon.wire.events import AnyEvent, Done, ErrorEvent, Refusal
@@ -41,8 +44,8 @@ class RefusedError(DaemonError):
 
 
 def exit_status(event: Refusal) -> int:
-    """The exit status of a refused command: 3 for a robot in fault, 2 for a bad request or name, else 1."""
-    if event.code == "fault":
+    """The exit status of a refused command: 3 for a robot in a fault or e-stop, 2 for a bad request or name, else 1."""
+    if event.code == "fault" or (event.code == "wrong_state" and "reset" in event.allowed):
         return 3
     return 2 if isinstance(event, ErrorEvent) or event.code in _BAD_NAMES else 1
 
@@ -75,7 +78,16 @@ class Said:
 
 
 def stamp(request: Request) -> None:
-    """Write into a request the time of sending, and the clock that it is read from."""
+    """Write into a request the time of sending, and the clock that it is read from.
+
+    Raises:
+        CommandError: a number of the request is not finite; JSON would have none in its place.
+    """
+    for name, value in msgspec.structs.asdict(request).items():
+        if isinstance(value, float) and not math.isfinite(value):
+            raise CommandError(
+                f"'{tag_of(request)}' request: found {name} {value}; allowed: a finite number; correct it"
+            )
     request.t_mono, request.clock = time.monotonic(), clock_id() or None
 
 

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import errno
 import importlib.util
+import socket
 import time
 from importlib.metadata import entry_points
 from pathlib import Path
 
 from daemon.network.web_access import address_of
-from daemon.settings.config import HTTP_ADDRESS, DaemonConfig, config_error
+from daemon.settings.config import HTTP_ADDRESS, DaemonConfig, EndpointInUseError, config_error
 
 SAFETENSORS_HEAD_BYTES = 9
 """Bytes read of a checkpoint: eight with the header's length, and the brace with which the header begins."""
@@ -44,8 +46,21 @@ def check_web_server(address: str) -> None:
 
     Raises:
         ConfigError: the address is malformed, or the library is missing.
+        EndpointInUseError: another process serves at the address.
     """
-    address_of(address)
+    host, port = address_of(address)
+    try:
+        with socket.create_server((host, port), family=socket.AF_INET6 if ":" in host else socket.AF_INET):
+            pass
+    except OSError as error:
+        if error.errno == errno.EADDRINUSE:
+            do = "end that process, or choose another port"
+            raise EndpointInUseError(
+                f"http: found {address}, which another process has; allowed: a free port; {do}"
+            ) from error
+        raise config_error(
+            "http", f"{address}: {error.strerror or error}", "an address of this machine", "correct it"
+        ) from error
     if importlib.util.find_spec("tornado") is None:
         raise config_error("http", "no tornado, the library that serves it", "mmmd[view]", "`pip install 'mmmd[view]'`")
 

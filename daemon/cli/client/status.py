@@ -16,7 +16,7 @@ _COUNTED = {"timeouts": "time-outs", "crc": "spoilt", "late": "late", "retries":
 
 
 def status(at: OmitArgPrefixes[Connection] = Connection(), json: bool = False) -> int:  # noqa: B008
-    """Show what the robot and the daemon are doing. Exit status 3 when the robot is in fault.
+    """Show what the robot and the daemon are doing. Exit status 3 when the robot is in a fault or e-stop.
 
     Example: mmmd status --json
 
@@ -30,7 +30,7 @@ def status(at: OmitArgPrefixes[Connection] = Connection(), json: bool = False) -
         now = robot.status()
     if json:
         sys.stdout.write(encode(now).decode() + "\n")
-        return 3 if now.state == "fault" else 0
+        return 3 if now.state in ("fault", "estop") else 0
     from rich.console import Console
     from rich.table import Table
 
@@ -56,7 +56,7 @@ def status(at: OmitArgPrefixes[Connection] = Connection(), json: bool = False) -
     for key, value in rows.items():
         table.add_row(f"[bold]{key}[/bold]", value)
     Console().print(table)
-    return 3 if now.state == "fault" else 0
+    return 3 if now.state in ("fault", "estop") else 0
 
 
 def gaze_words(yaw_deg: float, pitch_deg: float) -> str:

@@ -110,7 +110,7 @@ def generate(
         if path is not None and not path.parent.is_dir():
             raise CommandError(f"generate: {path}: no folder '{path.parent}'; make it, or choose another")
     made = _load(model, threads, precision).generate(prompt.text, seed=seed, seconds=seconds, candidates=candidates)
-    made.motion.save_npz(out)
+    _save(made, out)
     if made.status == "rejected":
         _say(_summary(prompt, made, out), json)
         nearest = f"; the nearest it knows: {made.understood}" if made.understood else ""
@@ -147,7 +147,7 @@ def _generate_batch(prompts: list[Prompt], folder: Path, engine: Engine, candida
             continue
         made = engine.generate(prompt.text, seed=prompt.seed, seconds=prompt.seconds, candidates=candidates)
         path = folder / f"{prompt.id}.npz"
-        made.motion.save_npz(path)
+        _save(made, path)
         rejected += made.status == "rejected"
         if json:
             _say(_summary(prompt, made, path), json)
@@ -172,14 +172,25 @@ def _tell(path: Path, out: Path, bvh: Path | None, bvh_names: BvhNames, seed: in
         if piece.status == "rejected":
             sys.stderr.write(f"mmmd: left out: {piece.text!r} is out of scope ({piece.scope_score:.2f})\n")
     whole = joined(pieces)
+    if not len(whole.joints_m):
+        raise CommandError(f"generate: --story {path}: no scene is a motion that the model knows; {out} is not written")
     whole.save_npz(out)
     if bvh is not None:
         save_bvh(whole, bvh, bvh_names)
-    sys.stdout.write(f"{out}: {len(whole.joints_m)} frames at {whole.fps:g} fps from {len(scenes)} texts\n")
-    return 0 if len(whole.joints_m) else 1
+    n_told = len(scenes) - sum(piece.status == "rejected" for piece in pieces)
+    sys.stdout.write(f"{out}: {len(whole.joints_m)} frames at {whole.fps:g} fps from {n_told} texts\n")
+    return 0
+
+
+def _save(made: GenerationResult, path: Path) -> None:
+    """Write a motion; that of a refused text, which has no frames, takes no other file's place."""
+    if made.status != "rejected" or not path.exists():
+        made.motion.save_npz(path)
 
 
 def _load(model: Path | None, threads: int, precision: Precision | None) -> Engine:
+    if threads < 1:
+        raise CommandError(f"generate: --threads {threads}; allowed: 1 or more")
     from mmm_core.generate.engine import Engine
 
     return Engine.load(model, threads=threads, precision=precision)

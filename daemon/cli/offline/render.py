@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 from typing import Annotated, Literal
 
@@ -52,6 +53,9 @@ def render(
     check_picture(out, "--out", tuple(_SIZES))
     if not (_even(width) and _even(height)):
         raise CommandError(f"--width {width} --height {height}: allowed are even numbers from 160 to 3840")
+    for name, seconds in (("--from-s", from_s), ("--to-s", to_s)):
+        if seconds is not None and not math.isfinite(seconds):
+            raise CommandError(f"{name} {seconds}; allowed: a number of seconds")
     performance = read_performance(file, robot, fps=RUN_FPS, from_s=from_s, to_s=to_s)
     if show == "person" and performance.person_m is None:
         raise CommandError(

@@ -1,0 +1,62 @@
+"""Exit statuses that docs/errors.md promises, and what bad numbers and refused texts leave."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import pytest
+
+from daemon.cli.program import main
+from daemon.client.errors import exit_status, stamp
+from daemon.errors import CommandError
+from daemon.settings.config import EndpointInUseError
+from daemon.supervisor.start_checks import check_web_server
+from daemon.wire import requests
+from daemon.wire.events import Rejected
+
+
+@pytest.mark.parametrize(
+    ("code", "allowed", "status"),
+    [
+        ("fault", "", 3),
+        ("wrong_state", "stop, estop, reset", 3),
+        ("wrong_state", "stop, arm", 1),
+        ("out_of_scope", "", 1),
+    ],
+)
+def test_a_fault_or_an_e_stop_is_status_3(code: str, allowed: str, status: int) -> None:
+    assert exit_status(Rejected(code=code, asked="say", found="", allowed=allowed, do="")) == status
+
+
+def test_ctrl_c_is_status_130(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    def interrupted(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("daemon.cli.program._run", interrupted)
+    assert main(["status"]) == 130
+    assert "interrupted" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("request_", [requests.Say(text="nod", seconds=math.nan), requests.Look(yaw_deg=math.inf)])
+def test_a_number_that_is_not_finite_is_refused_before_it_is_sent(request_: requests.Request) -> None:
+    """JSON has no such numbers: `look --yaw nan` freed the head and said that it was held."""
+    with pytest.raises(CommandError, match="finite number"):
+        stamp(request_)
+
+
+def test_a_refused_text_takes_no_other_motions_place(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    out = tmp_path / "kept.npz"
+    out.write_bytes(b"a motion")
+    assert main(["generate", "do not wave", "--out", str(out)]) == 1
+    assert out.read_bytes() == b"a motion"
+    assert main(["generate", "wave", "--out", str(out), "--threads", "0"]) == 2
+    assert "--threads 0" in capsys.readouterr().err
+
+
+def test_a_web_address_that_another_process_has_ends_the_start() -> None:
+    import socket
+
+    with socket.create_server(("127.0.0.1", 0)) as other:
+        with pytest.raises(EndpointInUseError, match="which another process has"):
+            check_web_server(f"127.0.0.1:{other.getsockname()[1]}")
