@@ -16,6 +16,7 @@ import zmq
 import zmq.asyncio
 
 from daemon.front.ctl_handler import CtlHandler
+from daemon.front.parking import park_at_the_end
 from daemon.front.publisher import SOCKET_BOUNDS, Publisher, Record
 from daemon.front.rate_limits import RATE_HZ, RequestLimits
 from daemon.front.request_handler import RequestHandler
@@ -33,7 +34,7 @@ from daemon.playback.setpoint_buffer import SetpointBuffer
 from daemon.playback.sources.source_factory import SourceFactory
 from daemon.scheduling.scheduler import Scheduler
 from daemon.settings.config import DaemonConfig
-from daemon.shared_memory.bus_link import BusLink, BusRequest
+from daemon.shared_memory.bus_link import BusLink
 from daemon.state.bus_view import BusView
 from daemon.state.ledger import Ledger, Route, split_route
 from daemon.state.machine import RobotState, StateMachine
@@ -47,9 +48,6 @@ from retarget.robot.robot import RobotModel
 log = logging.getLogger(__name__)
 
 DRAIN_LIMIT = 10_000
-PARK_AGAIN_S = 1.0
-HELD_S = 5.0
-"""Seconds that the robot holds when it is stopped while it parks at the daemon's end, before it parks again."""
 HEALTH_EVERY_S = 1.0
 STREAM_PAUSE_S = 0.001
 """Seconds between two readings of `stream`; of the targets that one sender sends meanwhile, the newest counts."""
@@ -151,36 +149,12 @@ class Front:
             task.result()
 
     async def park(self) -> RobotState:
-        """End all commands and park, as far as the robot's state allows; returns the state in which the robot is left.
-
-        A robot that is stopped meanwhile holds for `HELD_S`, then parks again.
-        """
-        self.performer.end_all("shutdown")
-        state = self.machine.state
-        if state in (RobotState.LIMP, RobotState.FAULT, RobotState.ESTOP) or not self.follower.bus_alive:
-            return state
-        end_s = time.monotonic() + self._config.park_timeout_s
-        asked_s = held_until_s = float("-inf")
-        self.follower.stopped = False
+        """End all commands and park, as far as the robot's state allows; returns the state in which the robot is left."""
         ticking = next((t for t in self._tasks if t.get_name() == self._tick_forever.__name__), None)
-        while time.monotonic() < end_s:
-            if ticking is None or ticking.done():  # the ticking task failed, which is why the robot is to be parked
-                self.performer.tick()
-            if self.machine.state in (RobotState.LIMP, RobotState.FAULT, RobotState.ESTOP):
-                return self.machine.state
-            now_s = time.monotonic()
-            parking = self.machine.state is RobotState.PARKING and asked_s > 0  # an earlier parking may stay there
-            if self.follower.stopped and held_until_s < asked_s:
-                log.warning("stopped while it parks: the robot holds for %g s, then parks again", HELD_S)
-                held_until_s = now_s + HELD_S
-                end_s = max(end_s, held_until_s + self._config.park_timeout_s / 2)
-            elif not parking and now_s - asked_s > PARK_AGAIN_S and now_s > held_until_s:
-                self.follower.stopped = False
-                self.link.request(BusRequest.PARK)
-                asked_s = now_s
-            await asyncio.sleep(TICK_S)
-        log.error("the robot did not park in %g s; it is in %s", self._config.park_timeout_s, self.machine.state.value)
-        return self.machine.state
+        is_ticking = (
+            ticking is not None and not ticking.done()
+        )  # it may have failed, which is why the robot is to be parked
+        return await park_at_the_end(self.performer, self.link, self._config.park_timeout_s, is_ticking=is_ticking)
 
     async def close(self) -> None:
         """Stop to serve and close the sockets."""

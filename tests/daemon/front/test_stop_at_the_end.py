@@ -7,13 +7,12 @@ import time
 
 import pytest
 
-from daemon.front.front import HELD_S
+from daemon.front.parking import HELD_S
 from tests.support.harness import running_daemon
 
 pytestmark = pytest.mark.realtime
 
 
-@pytest.mark.long
 def test_a_stop_during_the_park_at_the_end_is_kept() -> None:
     """The park was asked for again after a second at most."""
     with running_daemon() as daemon:
