@@ -151,10 +151,7 @@ class Front:
     async def park(self) -> RobotState:
         """End all commands and park, as far as the robot's state allows; returns the state in which the robot is left."""
         ticking = next((t for t in self._tasks if t.get_name() == self._tick_forever.__name__), None)
-        is_ticking = (
-            ticking is not None and not ticking.done()
-        )  # it may have failed, which is why the robot is to be parked
-        return await park_at_the_end(self.performer, self.link, self._config.park_timeout_s, is_ticking=is_ticking)
+        return await park_at_the_end(self.performer, self.link, self._config.park_timeout_s, ticking)
 
     async def close(self) -> None:
         """Stop to serve and close the sockets."""
