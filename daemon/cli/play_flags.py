@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeVar, cast
 import tyro
 
 from daemon.cli.connection import Connection
+from daemon.cli.program import FAILED, INTERRUPTED, ROBOT_FAULT
 from daemon.client.event_text import describe
 from daemon.errors import CommandError
 from daemon.wire.request_base import LEAST_AMPLITUDE, LEAST_TEMPO, MOST_AMPLITUDE, MOST_TEMPO
@@ -56,9 +57,6 @@ class PlayFlags:
         """Keyword arguments of the request."""
         return cast("PlayOptions", {f.name: getattr(self, f.name) for f in fields(self) if f.name != "id"})
 
-
-INTERRUPTED = 130
-"""Exit status after Ctrl-C, as shells expect it."""
 
 P = TypeVar("P", bound="Play")
 
@@ -118,7 +116,7 @@ def _watched(request: Play, at: Connection, *, wait: bool, json: bool) -> int:
                     sys.stderr.write(f"mmmd: {event.message}\n")
                 status = exit_status(event)
             elif isinstance(event, Cancelled):
-                status = 3 if event.by in ("estop", "fault") else 1
+                status = ROBOT_FAULT if event.by == "estop" else FAILED
             if not wait and isinstance(event, Accepted):
                 break
     return status

@@ -88,6 +88,8 @@ COMMANDS: dict[str, CommandEntry] = {
     "completion": CommandEntry("daemon.cli.completion:completion", "completion for bash, zsh and fish"),
 }
 GOOD, FAILED, BAD_USE, ROBOT_FAULT = 0, 1, 2, 3
+INTERRUPTED = 130
+"""Exit status after Ctrl-C, as shells expect it."""
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -112,7 +114,7 @@ def _answer(name: str = "", *arguments: str) -> int:
             _out(_found())
         return GOOD if name else BAD_USE
     if name in ("-V", "--version"):
-        from importlib.metadata import version  # takes a tenth of a second, in which Ctrl-C would print a traceback
+        from importlib.metadata import version  # here alone: it would lengthen the start of every command
 
         _out(f"mmmd {version('mmmd')}")
         return GOOD
@@ -136,8 +138,6 @@ def _guarded(name: str, arguments: Sequence[str]) -> int:
     except SystemExit as stop:  # argument parsing: 0 after --help, 2 after bad use
         return stop.code if isinstance(stop.code, int) else BAD_USE
     except KeyboardInterrupt:
-        from daemon.cli.play_flags import INTERRUPTED
-
         return _failed("interrupted", INTERRUPTED)
     except BrokenPipeError:
         raise

@@ -39,8 +39,6 @@ log = logging.getLogger(__name__)
 
 LOOK_S = 0.002
 """Seconds between two polls for an e-stop while the loop waits for its next cycle."""
-ASKED_AT_END = 3
-"""Number of times at most that a servo is asked at the end of the loop whether it has torque."""
 
 
 class ControlLoop:
@@ -99,7 +97,7 @@ class ControlLoop:
         self._end()
 
     def _end(self) -> None:
-        """Cut torque, repeat that as cycles do, then ask each servo, and cut again where one has torque or does not answer."""
+        """Cut torque, repeat that as cycles do, then ask the servos whether they have received it."""
         self._states.cut_torque()
         due_s = self._clock.now_s()
         for _ in range(TORQUE_OFF_REPEATS):
@@ -108,14 +106,7 @@ class ControlLoop:
             with suppress(LinkError, ServoFaultError):
                 self._torque.repeat_off()
                 self._bus.exchange(None)
-        left = list(self._bus.ids)
-        for _ in range(ASKED_AT_END):
-            with suppress(LinkError, ServoFaultError):
-                left = [servo_id for servo_id in left if self._bus.poll_item(servo_id, "torque_enable") != 0]
-                if not left:
-                    return
-                self._bus.send_torque_off()
-        log.error("servo %s may still have torque: it did not say that it has none", ", ".join(map(str, left)))
+        self._torque.confirm_off()
 
     @property
     def state(self) -> BusState:

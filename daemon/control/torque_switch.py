@@ -13,12 +13,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daemon.dynamixel.servo_bus import ServoBus
-from daemon.errors import LinkError, LinkLostError
+from daemon.errors import LinkError, LinkLostError, ServoFaultError
 
 log = logging.getLogger(__name__)
 
 TORQUE_OFF_REPEATS = 5
 """Number of times that the packet of torque off is sent, once a bus cycle."""
+ASKED_AT_END = 3
+"""Number of times at most that a servo is asked at the end of the process whether it has torque."""
 
 
 class TorqueSwitch:
@@ -86,6 +88,23 @@ class TorqueSwitch:
             ids = ", ".join(str(self._bus.ids[row]) for row in holding)
             log.warning("servo %s still has torque: torque off is sent again", ids)
             self._bus.send_torque_off()
+
+    def confirm_off(self) -> None:
+        """Ask each servo whether it has torque, cut again where one does not deny it, and log those that never do."""
+        left = list(self._bus.ids)
+        for _ in range(ASKED_AT_END):
+            left = [servo_id for servo_id in left if not self._says_it_is_limp(servo_id)]
+            if not left:
+                return
+            with suppress(LinkError):
+                self._bus.send_torque_off()
+        log.error("servo %s may still have torque: it did not say that it has none", ", ".join(map(str, left)))
+
+    def _says_it_is_limp(self, servo_id: int) -> bool:
+        try:
+            return self._bus.poll_item(servo_id, "torque_enable") == 0
+        except (LinkError, ServoFaultError):  # a lost port keeps nobody from asking the servos of another
+            return False
 
     def cut_at(self, at_s: float) -> None:
         """Schedule a cut for a time, which `cut_is_due` reports unless the fault is over by then."""

@@ -98,7 +98,7 @@ class TurnTaking:
         machine = self._follower.machine
         machine.check(Trigger.SAY)
         if not self._follower.can_take_over:
-            while machine.state is RobotState.LIMP and not self._has_asked_to_arm():
+            while machine.state is RobotState.LIMP and not self._ask_to_arm():
                 await self._clock.sleep(TICK_S)
                 machine.check(Trigger.SAY)
             if machine.state in (RobotState.LIMP, RobotState.ARMING):
@@ -114,8 +114,8 @@ class TurnTaking:
         if self._clock.now_s() > entry.deadline_s:
             raise too_late(entry, "its turn came too late")
 
-    def _has_asked_to_arm(self) -> bool:
-        """Ask to arm, but after a halt that the front has not been told about yet: it ends this command first."""
+    def _ask_to_arm(self) -> bool:
+        """Ask to arm, unless there is a halt that the front has not been told about yet; returns whether this was asked."""
         number = self._link.new_number()  # before the look at the halts, so that a halt after it makes the request void
         if self._link.epochs.unknown_halts:
             return False

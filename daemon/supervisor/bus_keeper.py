@@ -12,14 +12,7 @@ from daemon.front.front import Front
 from daemon.settings.config import DaemonConfig
 from daemon.shared_memory.bus_link import BusLink, BusState, Readiness
 from daemon.shared_memory.request_words import ESTOPS, BusRequest
-from daemon.supervisor.children import (
-    FIRST_BACK_OFF_S,
-    GOOD_LIFE_S,
-    LONGEST_BACK_OFF_S,
-    BackOff,
-    Child,
-    ChildStartError,
-)
+from daemon.supervisor.children import FIRST_BACK_OFF_S, GOOD_LIFE_S, LONGEST_BACK_OFF_S, BackOff, Child
 
 log = logging.getLogger(__name__)
 
@@ -68,7 +61,6 @@ class BusKeeper:
         Raises:
             ConfigError: the bus process refuses the bus URL.
             BusStartError: the bus process could not open the bus, ended or froze, or the daemon is asked to end.
-            ChildStartError: the system could not start the process.
         """
         self._link.set_ready(Readiness.STARTING)
         await self.child.start()
@@ -109,7 +101,7 @@ class BusKeeper:
             self.child.add_argument("--after-loss")
             try:
                 await self.start()
-            except (BusStartError, ChildStartError, ConfigError) as error:
+            except (BusStartError, ConfigError) as error:
                 log.error("the bus process could not be started again: %s", error)
                 continue
             front.view.begin(BusState.FAULT)

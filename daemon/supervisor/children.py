@@ -12,7 +12,6 @@ from collections import deque
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from daemon.errors import DaemonError
 from daemon.host.cores import on_all_cores
 from daemon.host.parent import PARENT_VARIABLE
 from daemon.host.worker_threads import WORKER_THREADS
@@ -20,12 +19,10 @@ from daemon.host.worker_threads import WORKER_THREADS
 log = logging.getLogger(__name__)
 
 FIRST_BACK_OFF_S, LONGEST_BACK_OFF_S = 0.5, 30.0
+NOT_STARTED = 126
+"""Exit status of a process that the system could not start, as shells give it."""
 GOOD_LIFE_S = 2.0
 """Seconds after which a start counts as successful: the wait before the next start is short again."""
-
-
-class ChildStartError(DaemonError):
-    """The system could not start a process: too many processes or open files, or too little memory."""
 
 
 class BackOff:
@@ -71,6 +68,7 @@ class Child:
         self._module, self._arguments = module, list(arguments)
         self._process: asyncio.subprocess.Process | None = None
         self._forward: asyncio.Task[None] | None = None
+        self._is_refused = False
         self._started_s = self._ran_s = time.monotonic()
         self.said: deque[str] = deque(maxlen=5)
 
@@ -115,13 +113,13 @@ class Child:
     async def start(self, pass_fds: Sequence[int] = ()) -> None:
         """Start the process, or start it again; it inherits the descriptors `pass_fds`.
 
-        Raises:
-            ChildStartError: the system has no room for another process now.
+        One that the system cannot start (too many processes or open files, too little memory) counts as ended with `NOT_STARTED`.
         """
         environment = {**os.environ, **WORKER_THREADS, **self._environment}
         environment[PARENT_VARIABLE] = str(os.getpid())
         self.said.clear()
         self._started_s = self._ran_s = time.monotonic()
+        self._process, self._is_refused = None, False
         try:
             with on_all_cores():
                 self._process = await asyncio.create_subprocess_exec(
@@ -130,12 +128,17 @@ class Child:
                     start_new_session=True, pass_fds=pass_fds,
                 )  # fmt: skip
         except OSError as error:
-            raise ChildStartError(f"the {self.name} cannot be started: {error.strerror or error}") from error
+            self._is_refused = True
+            self.said.append(f"cannot be started: {error.strerror or error}")
+            log.error("the %s %s", self.name, self.said[-1])
+            return
         if self._follow:
             self._forward = asyncio.create_task(self._forward_stderr(self._process))
 
     async def ended(self) -> int:
         """Wait for the end of the process; returns its exit status, negative for a signal."""
+        if self._is_refused:
+            return NOT_STARTED
         assert self._process is not None, "not started"
         status = await self._process.wait()
         if self._forward is not None:

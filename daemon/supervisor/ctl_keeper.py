@@ -12,7 +12,7 @@ from daemon.errors import ConfigError, DaemonError
 from daemon.settings.config import DaemonConfig, EndpointInUseError
 from daemon.shared_memory.bus_link import BusLink
 from daemon.shared_memory.heartbeat import HeartbeatWatch
-from daemon.supervisor.children import BackOff, Child, ChildStartError
+from daemon.supervisor.children import BackOff, Child
 from retarget.robot.robot import RobotModel
 
 log = logging.getLogger(__name__)
@@ -54,17 +54,12 @@ class CtlKeeper:
         Raises:
             ConfigError: the endpoint cannot be bound.
             CtlStartError: the process ended, or did not begin to serve in time.
-            ChildStartError: the system could not start the process.
         """
         ours, theirs = pair()
         with theirs:
             arguments = [*self._arguments, "--channel", str(theirs.fileno())]
             self._child = child = Child("ctl process", "daemon.ctl.process", arguments, self._environment)
-            try:
-                await child.start(pass_fds=(theirs.fileno(),))
-            except ChildStartError:
-                ours.close()
-                raise
+            await child.start(pass_fds=(theirs.fileno(),))
         channel = Channel(ours)
         end_s = time.monotonic() + START_TIMEOUT_S
         while time.monotonic() < end_s:

@@ -12,7 +12,7 @@ from collections.abc import Coroutine, Mapping
 from daemon.generator.client import GeneratorClient
 from daemon.generator.generated import GeneratorError
 from daemon.settings.config import DaemonConfig
-from daemon.supervisor.children import FIRST_BACK_OFF_S, LONGEST_BACK_OFF_S, BackOff, Child, ChildStartError
+from daemon.supervisor.children import FIRST_BACK_OFF_S, LONGEST_BACK_OFF_S, BackOff, Child
 
 log = logging.getLogger(__name__)
 
@@ -65,14 +65,7 @@ class GeneratorKeeper:
         back_off = BackOff(FIRST_BACK_OFF_S, LONGEST_BACK_OFF_S, last_s=FIRST_BACK_OFF_S)
         while True:
             client.mark_starting()
-            try:
-                await child.start()
-            except ChildStartError as error:
-                wait_s = back_off.after(good=False)
-                client.mark_down(f"{error}; tried again in {wait_s:g} s")
-                log.error("generator %s", client.state)
-                await asyncio.sleep(wait_s)
-                continue
+            await child.start()
             answered = await self._attend()
             child.kill()
             status = await child.ended()

@@ -12,14 +12,7 @@ from daemon.recording.feed import RecorderFeed
 from daemon.settings.config import HTTP_ADDRESS, DaemonConfig
 from daemon.settings.sources import settings_of
 from daemon.shared_memory.bus_link import BusLink
-from daemon.supervisor.children import (
-    FIRST_BACK_OFF_S,
-    GOOD_LIFE_S,
-    LONGEST_BACK_OFF_S,
-    BackOff,
-    Child,
-    ChildStartError,
-)
+from daemon.supervisor.children import FIRST_BACK_OFF_S, GOOD_LIFE_S, LONGEST_BACK_OFF_S, BackOff, Child
 
 log = logging.getLogger(__name__)
 
@@ -37,15 +30,10 @@ async def keep_web_server(child: Child) -> None:
     """Start the web server, and start it again whenever it ends."""
     back_off = BackOff(FIRST_BACK_OFF_S, LONGEST_BACK_OFF_S, last_s=FIRST_BACK_OFF_S)
     while True:
-        try:
-            await child.start()
-            status = await child.ended()
-        except ChildStartError as error:
-            wait_s = back_off.after(good=False)
-            log.error("%s; tried again in %g s", error, wait_s)
-        else:
-            wait_s = back_off.after(good=child.lived_s > GOOD_LIFE_S)
-            log.error("the web server ended with status %d and starts again in %g s", status, wait_s)
+        await child.start()
+        status = await child.ended()
+        wait_s = back_off.after(good=child.lived_s > GOOD_LIFE_S)
+        log.error("the web server ended with status %d and starts again in %g s", status, wait_s)
         await asyncio.sleep(wait_s)
 
 
@@ -59,13 +47,10 @@ def recorder(config: DaemonConfig, link: BusLink, events: str, environment: Mapp
 
 async def record(child: Child, feed: RecorderFeed, front: Front, out: str) -> None:
     """Run the recorder until the end; after it fails, `mmmd status` shows that the robot has no log."""
+    await child.start()
     try:
-        await child.start()
         status = await child.ended()
         front.recording = f"stopped (status {status}): {out}"
         log.error("recording ended with status %d; the robot goes on without a log", status)
-    except ChildStartError as error:
-        front.recording = f"stopped ({error}): {out}"
-        log.error("%s; the robot goes on without a log", error)
     finally:
         await feed.close()

@@ -45,7 +45,7 @@ def check_web_server(address: str) -> None:
     """Refuse a malformed address, and a server whose library is missing, before any process starts.
 
     Raises:
-        ConfigError: the address is malformed, or the library is missing.
+        ConfigError: the address is malformed or cannot be served at, or the library is missing.
         EndpointInUseError: another process serves at the address.
     """
     host, port = address_of(address)
@@ -59,7 +59,10 @@ def check_web_server(address: str) -> None:
                 f"http: found {address}, which another process has; allowed: a free port; {do}"
             ) from error
         raise config_error(
-            "http", f"{address}: {error.strerror or error}", "an address of this machine", "correct it"
+            "http",
+            f"{address}: {error.strerror or error}",
+            "an address of this machine, and a port that this user may open",
+            "correct it",
         ) from error
     if importlib.util.find_spec("tornado") is None:
         raise config_error("http", "no tornado, the library that serves it", "mmmd[view]", "`pip install 'mmmd[view]'`")

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from tyro.conf import OmitArgPrefixes
 
 from daemon.cli.connection import Connection
+from daemon.cli.program import GOOD, ROBOT_FAULT
 
 if TYPE_CHECKING:
     from daemon.wire.status import ServoHealth, StateEvent
@@ -28,9 +29,10 @@ def status(at: OmitArgPrefixes[Connection] = Connection(), json: bool = False) -
 
     with at.client() as robot:
         now = robot.status()
+    exit_status = ROBOT_FAULT if now.state in ("fault", "estop") else GOOD
     if json:
         sys.stdout.write(encode(now).decode() + "\n")
-        return 3 if now.state in ("fault", "estop") else 0
+        return exit_status
     from rich.console import Console
     from rich.table import Table
 
@@ -56,7 +58,7 @@ def status(at: OmitArgPrefixes[Connection] = Connection(), json: bool = False) -
     for key, value in rows.items():
         table.add_row(f"[bold]{key}[/bold]", value)
     Console().print(table)
-    return 3 if now.state in ("fault", "estop") else 0
+    return exit_status
 
 
 def gaze_words(yaw_deg: float, pitch_deg: float) -> str:

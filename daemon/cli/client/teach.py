@@ -16,7 +16,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 from daemon.cli.connection import Connection
-from daemon.cli.play_flags import INTERRUPTED, PlayFlags, built, play
+from daemon.cli.play_flags import PlayFlags, built, play
+from daemon.cli.program import INTERRUPTED
 from daemon.errors import CommandError
 
 if TYPE_CHECKING:

@@ -173,7 +173,10 @@ def _tell(path: Path, out: Path, bvh: Path | None, bvh_names: BvhNames, seed: in
             sys.stderr.write(f"mmmd: left out: {piece.text!r} is out of scope ({piece.scope_score:.2f})\n")
     whole = joined(pieces)
     if not len(whole.joints_m):
-        raise CommandError(f"generate: --story {path}: no scene is a motion that the model knows; {out} is not written")
+        sys.stderr.write(
+            f"mmmd: generate: --story {path}: no scene is a motion that the model knows; {out} is not written\n"
+        )
+        return 1
     whole.save_npz(out)
     if bvh is not None:
         save_bvh(whole, bvh, bvh_names)

@@ -142,6 +142,7 @@ def is_pseudo(fd: int) -> bool:
 _PSEUDO_MAJORS = range(136, 144)
 _MOST_OFF_SHARE = 0.03
 """Share by which a port's speed may differ from the requested one with servos and adapters still understanding each other."""
+_LOOK = "check cable and path: ls -l /dev/serial/by-id/"
 _USUAL = "57600, 115200, 1000000, 2000000, 3000000 or 4000000"
 
 
@@ -155,16 +156,16 @@ def _open(device: str, baud: int, url: str) -> serial.Serial:
             raise PortPermissionError(url, f"user '{user}' may not open '{device}'", remedy) from error
         if error.errno in (errno.EBUSY, errno.EAGAIN) or "exclusively lock" in str(error):
             raise PortBusyError(url, f"in use by {process_holding(device)}", "stop that process") from error
-        raise PortError(url, str(error), "check cable and path: ls -l /dev/serial/by-id/") from error
+        raise PortError(url, str(error), _LOOK) from error
     except (ValueError, OverflowError) as error:
         raise PortBaudError(url, f"baud {baud} is not possible ({error})", f"allowed: {_USUAL}") from error
     except (OSError, termios.error) as error:  # an adapter that is lost again while it is set up
-        raise PortError(url, str(error), "check cable and path: ls -l /dev/serial/by-id/") from error
+        raise PortError(url, str(error), _LOOK) from error
     try:
         speed = tty_speed(port.fileno())
     except (OSError, termios.error) as error:
         port.close()
-        raise PortError(url, str(error), "check cable and path: ls -l /dev/serial/by-id/") from error
+        raise PortError(url, str(error), _LOOK) from error
     if speed is not None and abs(speed - baud) > _MOST_OFF_SHARE * baud:
         port.close()
         raise PortBaudError(url, f"baud {baud} is not possible (the port went to {speed})", f"allowed: {_USUAL}")

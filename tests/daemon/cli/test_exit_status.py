@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import socket
 from pathlib import Path
 
 import pytest
@@ -55,8 +56,6 @@ def test_a_refused_text_takes_no_other_motions_place(tmp_path: Path, capsys: pyt
 
 
 def test_a_web_address_that_another_process_has_ends_the_start() -> None:
-    import socket
-
     with socket.create_server(("127.0.0.1", 0)) as other:
         with pytest.raises(EndpointInUseError, match="which another process has"):
             check_web_server(f"127.0.0.1:{other.getsockname()[1]}")

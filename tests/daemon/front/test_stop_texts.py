@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import json
-from pathlib import Path
 
 import pytest
 
 from daemon.front.stop_texts import stops
 from mmm_core.language.stop_words import _STOP_PHRASES, _STOP_WORDS, means_stop
+from tests.support.stop_words_page import listed
 
 
 @pytest.mark.parametrize(
@@ -34,14 +34,12 @@ def test_which_requests_stop(frames: list[bytes], stop: bool) -> None:
     assert stops(frames) is stop
 
 
-PAGE = (Path(__file__).parents[3] / "docs" / "wire" / "stop_words.md").read_text("utf-8")
-LISTED = [line[2:] for line in PAGE.split("## These stop\n")[1].split("\n## ")[0].splitlines() if line.startswith("- ")]
 SAID = """
     hold it, STOOOP!, whoa, desist, fermati, stój, cut it out, stay put, no further, hoooold it
 """.strip().split(", ")
 
 
-@pytest.mark.parametrize("text", [*LISTED, *SAID, *sorted(_STOP_WORDS), *_STOP_PHRASES])
+@pytest.mark.parametrize("text", [*listed("These stop"), *SAID, *sorted(_STOP_WORDS), *_STOP_PHRASES])
 def test_every_text_that_stops_does_so_above_the_rate(text: str) -> None:
     """Five of the page's own texts had none of the words that were looked for first."""
     if means_stop(text):  # some phrases only name what is to stop

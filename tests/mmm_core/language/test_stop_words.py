@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import dataclasses
 import re
-from pathlib import Path
 
 import pytest
 from hypothesis import given
@@ -14,14 +13,7 @@ from mmm_core.corpus.families import FAMILIES
 from mmm_core.corpus.families.phrases import read_phrases
 from mmm_core.language.reading import read
 from mmm_core.language.stop_words import means_stop
-
-PAGE = Path(__file__).parents[3] / "docs" / "wire" / "stop_words.md"
-
-
-def listed(heading: str) -> list[str]:
-    section = PAGE.read_text("utf-8").split(f"## {heading}\n")[1].split("\n## ")[0]
-    return [line[2:] for line in section.splitlines() if line.startswith("- ")]
-
+from tests.support.stop_words_page import listed
 
 STOPS, COMMANDS = listed("These stop"), listed("These do not")
 
