@@ -138,6 +138,6 @@ def test_a_bus_process_that_dies_ends_the_command_once_and_is_status_3(shared: S
         assert [type(e) for e in heard] == [ev.Failed] and heard[0].code == "fault"
         assert "bus process" in client.wait_for("fault", timeout_s=5).reason
     refused = daemon.mmmd("say", "wave")
-    assert refused.returncode == 1 and "fault" in refused.stderr
+    assert refused.returncode == 3 and "fault" in refused.stderr
     assert daemon.mmmd("status").returncode == 3
     assert daemon.terminate() == 3

@@ -176,8 +176,10 @@ def a_killed_run(browser: Browser, log: Path) -> str:
             browser.wait(
                 lambda: np.ptp([robot.status().present_rad, before.present_rad], axis=0).max() > 0.5, "the arm", SOON_S
             )
-            n_bytes = Path(before.recording).stat().st_size
-            browser.wait(lambda: Path(before.recording).stat().st_size > n_bytes, "that the log holds it", SOON_S)
+            recorded = Path(before.recording)
+            browser.wait(recorded.is_file, "the log", SOON_S)  # the recorder may be the last process to start
+            n_bytes = recorded.stat().st_size
+            browser.wait(lambda: recorded.stat().st_size > n_bytes, "that the log holds it", SOON_S)
         daemon.process.kill()
     finally:
         daemon.close()
