@@ -30,7 +30,6 @@ from daemon.client.errors import (
     Said,
     unexpected,
 )
-from daemon.client.lines import within
 from daemon.client.streams import AsyncStream, LeaseNews, begun, new_lease
 from daemon.wire.codec import decode_event
 from daemon.wire.events import Ack, AnyEvent, Done, Refusal
@@ -121,7 +120,7 @@ class AsyncClient(AsyncControlCalls, CompositionCalls[Coroutine[Any, Any, Said]]
         end_s, limit_s = time.monotonic() + timeout_s, min(timeout_s, FIRST_REPLY_TIMEOUT_S)
         async with line.asked(request, limit_s) as heard:
             while True:
-                event = await within(heard, limit_s, line.endpoint, asked)
+                event = await line.next_event(heard, limit_s, asked)
                 yield event
                 if event.terminal:
                     return

@@ -10,7 +10,7 @@ import zmq.asyncio
 
 from daemon.client.compositions import REPLY_TIMEOUT_S
 from daemon.client.errors import unexpected
-from daemon.client.lines import Line, within
+from daemon.client.lines import Line
 from daemon.network.keys import KeyFolder, connect_curve
 from daemon.settings.config import Endpoints
 from daemon.wire.events import Ack, AnyEvent
@@ -58,8 +58,9 @@ class AsyncConnection:
         return event
 
     async def _ask(self, request: Request, endpoint: str) -> AnyEvent:
-        async with self._line(endpoint).asked(request, self._timeout_s) as heard:
-            return await within(heard, self._timeout_s, endpoint, tag_of(request))
+        line = self._line(endpoint)
+        async with line.asked(request, self._timeout_s) as heard:
+            return await line.next_event(heard, self._timeout_s, tag_of(request))
 
     def _line(self, endpoint: str) -> Line:
         if endpoint not in self._lines:

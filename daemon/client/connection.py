@@ -9,7 +9,7 @@ from typing import Self
 import zmq
 
 from daemon.client.compositions import REPLY_TIMEOUT_S
-from daemon.client.errors import NoAnswerError, RefusedError, stamp, unexpected
+from daemon.client.errors import ConnectionLostError, NoAnswerError, RefusedError, stamp, unexpected
 from daemon.network.keys import KeyFolder, connect_curve
 from daemon.network.probe import PROBE_TIMEOUT_S, listening
 from daemon.settings.config import Endpoints
@@ -17,8 +17,8 @@ from daemon.wire.codec import decode_event, encode
 from daemon.wire.events import Ack, AnyEvent, Refusal
 from daemon.wire.requests import Request, tag_of
 
-LONGEST_POLL_S = 60.0
-"""Seconds of one poll at most: a wait without limit is a series of polls, because ZeroMQ takes whole milliseconds."""
+LONGEST_POLL_S = 0.5
+"""Seconds of one poll at most; after each it is asked whether the connection still stands."""
 
 
 class Connection:
@@ -86,8 +86,13 @@ class Connection:
         self, socket: zmq.Socket[bytes], began_s: float, timeout_s: float, endpoint: str, asked: str
     ) -> AnyEvent:
         while not socket.poll(int(1000 * min(LONGEST_POLL_S, max(0.0, began_s + timeout_s - time.monotonic())))):
-            if time.monotonic() >= began_s + timeout_s:
+            waited_s = time.monotonic() - began_s
+            if waited_s >= timeout_s:
                 raise NoAnswerError(endpoint, asked, timeout_s)
+            if not socket.poll(
+                0, zmq.POLLOUT
+            ):  # with IMMEDIATE, there is room for a message only while there is a connection
+                raise ConnectionLostError(endpoint, asked, waited_s)
         return decode_event(socket.recv())
 
     def _cmd_socket(self) -> zmq.Socket[bytes]:

@@ -33,6 +33,17 @@ class NoAnswerError(DaemonError, TimeoutError):
         super().__init__(f"{asked}: no answer from {endpoint} in {timeout_s:g} s; {do}")
 
 
+class ConnectionLostError(NoAnswerError):
+    """The connection broke while an answer was awaited, so that none can come."""
+
+    def __init__(self, endpoint: str, asked: str, waited_s: float) -> None:
+        super().__init__(endpoint, asked, waited_s)
+        self.args = (
+            f"{asked}: {endpoint} was lost after {waited_s:.1f} s: the daemon ended, or a network in between; what it was doing is "
+            f"unknown: look at the robot, start `mmmd run` again, and say it again",
+        )
+
+
 class RefusedError(DaemonError):
     """The daemon rejected a request, or could not carry it out; `event` says why."""
 

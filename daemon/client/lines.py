@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import time
 from collections.abc import AsyncGenerator
 
+import zmq
 import zmq.asyncio
 
-from daemon.client.errors import NoAnswerError, stamp
+from daemon.client.connection import LONGEST_POLL_S
+from daemon.client.errors import ConnectionLostError, NoAnswerError, stamp
 from daemon.wire.codec import decode_event, encode
 from daemon.wire.events import AnyEvent, Refusal
 from daemon.wire.requests import Request, tag_of
@@ -46,6 +49,23 @@ class Line:
         finally:
             self._waiting.pop(request.id, None)
 
+    async def next_event(self, heard: asyncio.Queue[AnyEvent], timeout_s: float, asked: str) -> AnyEvent:
+        """The next event of a queue that `asked` gave.
+
+        Raises:
+            NoAnswerError: no event in time, or the connection broke meanwhile.
+        """
+        began_s = time.monotonic()
+        while True:
+            left_s = began_s + timeout_s - time.monotonic()
+            with contextlib.suppress(TimeoutError):
+                return await asyncio.wait_for(heard.get(), min(LONGEST_POLL_S, max(0.0, left_s)))
+            waited_s = time.monotonic() - began_s
+            if waited_s >= timeout_s:
+                raise NoAnswerError(self.endpoint, asked, timeout_s)
+            if not await self._socket.poll(0, zmq.POLLOUT):  # type: ignore[call-arg]  # as in `Connection._receive`
+                raise ConnectionLostError(self.endpoint, asked, waited_s)
+
     async def close(self) -> None:
         """Stop receiving events and close the socket."""
         if self._reader is not None:
@@ -62,15 +82,3 @@ class Line:
             elif isinstance(event, Refusal) and not event.id:  # the refused frame had no id
                 for heard in self._waiting.values():
                     heard.put_nowait(event)
-
-
-async def within(heard: asyncio.Queue[AnyEvent], timeout_s: float, endpoint: str, asked: str) -> AnyEvent:
-    """The next event of a queue.
-
-    Raises:
-        NoAnswerError: no event in time.
-    """
-    try:
-        return await asyncio.wait_for(heard.get(), timeout_s if timeout_s < LONGEST_WAIT_S else None)
-    except TimeoutError:
-        raise NoAnswerError(endpoint, asked, timeout_s) from None

@@ -13,6 +13,7 @@ import zmq
 
 from daemon.cli.client.control import _tell
 from daemon.client import AsyncClient, Client, NoAnswerError, RefusedError
+from daemon.client.errors import ConnectionLostError
 from daemon.errors import ConfigError
 from daemon.settings.config import Endpoints
 from daemon.settings.sources import config_of, resolve
@@ -210,3 +211,37 @@ def test_settings_of_leases_have_ranges_and_sources():
     for key, value in (("lease_s", 3.0), ("lease_park_s", 0.1), ("lease_limp_s", -1.0), ("stream_queue_s", 1.0)):
         with pytest.raises(ConfigError, match=key):
             config_of(resolve({key: value}, environment={}))
+
+
+def takes_it(frame: bytes) -> list[bytes]:
+    """The answer of a daemon that takes a text and then says nothing more."""
+    return [wire.encode(events.Progress(id=msgspec.json.decode(frame)["id"], plan_id=1, stage="arming"))]
+
+
+@pytest.mark.parametrize("loop", [False, True])
+def test_a_daemon_that_ends_ends_the_wait_for_a_motion(endpoints, loop):
+    """It lasted a minute, and with `loop` for ever."""
+    with contextlib.ExitStack() as stack:
+        peer = Peer(endpoints.cmd, takes_it)
+        client = stack.enter_context(Client(endpoints))
+        events_of = client.events_of(requests.Say(id="a", text="wave", loop=loop))
+        assert isinstance(next(events_of), events.Progress)
+        peer.close()
+        began_s = time.monotonic()
+        with pytest.raises(ConnectionLostError, match="the daemon ended"):
+            next(events_of)
+        assert time.monotonic() - began_s < 10
+
+
+def test_a_daemon_that_ends_ends_the_wait_of_the_asyncio_client(endpoints):
+    async def wait() -> None:
+        peer = Peer(endpoints.cmd, takes_it)
+        async with AsyncClient(endpoints) as client:
+            heard = client.events_of(requests.Say(id="a", text="wave", loop=True))
+            assert isinstance(await anext(heard), events.Progress)
+            await asyncio.to_thread(peer.close)
+            with pytest.raises(ConnectionLostError, match="the daemon ended"):
+                await anext(heard)
+            await heard.aclose()
+
+    asyncio.run(asyncio.wait_for(wait(), 20))
