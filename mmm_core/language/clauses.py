@@ -20,7 +20,7 @@ from mmm_core.language.ellipsis_patterns import KEEPS_ON, ONLY_SIDE, THING
 from mmm_core.language.limbs import is_gesture_verb
 from mmm_core.language.requests import everyday
 
-MOST_COMMANDS, MOST_WORDS = 4, 60
+MOST_COMMANDS, MOST_WORDS = 8, 60
 """Largest number of commands and of words in a text that is divided; a longer text stays one command."""
 _ALL_AGAIN = re.compile(
     r"(?:and )?(?:repeat|again|(?:do|repeat) (?:it|that|them|all|everything|the lot)(?: all)?(?: again)?|the same again|and again)"

@@ -27,6 +27,8 @@ _MOST_BESIDE_DENIED = 6
 _COMPARES = re.compile(r"\b(?:as if|as though|like)\b")
 _MOST_TOLD_TERSELY = 4
 """Words of a sentence of several commands, at most, that the rules read alone: "jab, uppercut"."""
+_MOST_LEARNT = 4
+"""Commands in turn that the networks learnt to find, at most."""
 _MOST_LEFT_OUT = 4
 """Words that a sentence has beyond those of its command, at most, without being looked at for words of manner."""
 
@@ -65,14 +67,15 @@ def needs_tags(reading: Reading) -> bool:
 
     A sentence that denies something beside a command needs tags as well, since the command may be only a reason: "no carrying,
     you'll drop it". Of 3,205 sentences by seven writers, networks mend 12 such that the rules read surely, and spoil 3.
-    Words that may say a manner are in a command that is no phrase of the corpus, or in a comparison that was left out.
+    Words that may say a manner are in a command that is no phrase of the corpus, or in a comparison that was left out. Of more
+    than four commands the networks would leave some out.
     """
     commands = [BESIDE.sub("", command.text.lower()) for step in reading.steps for command in step]
     if len(commands) == 1 and _IS_CAPTION.match(commands[0]):
         return False
     if _may_be_divided_wrongly(reading) or (reading.denied and reading.steps):
         return True
-    known = all(key_of(command) is None or is_known_phrase(command) for command in commands)
+    known = len(reading.steps) > _MOST_LEARNT or all(key_of(c) is None or is_known_phrase(c) for c in commands)
     compares = _COMPARES.search(reading.text) is not None and not any(map(_COMPARES.search, commands))
     return compares or not (known and is_sure(reading))
 
@@ -90,7 +93,7 @@ def _may_be_divided_wrongly(reading: Reading) -> bool:
     commands = [command.text.lower() for step in reading.steps for command in step]
     differ = 1 < len(commands) == len(set(commands)) and len(text.split()) > _MOST_TOLD_TERSELY
     return (
-        (differ and any(command not in text for command in commands))
+        (differ and len(reading.steps) <= _MOST_LEARNT and any(command not in text for command in commands))
         or _DIVIDED_WRONGLY.search(text) is not None
         or any(len(step) > 1 for step in reading.steps)
     )

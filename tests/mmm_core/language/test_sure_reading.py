@@ -22,10 +22,20 @@ from mmm_core.language.sure_reading import needs_networks
         "do not wave with your right hand",
         "don't bow or clap",
         "do not shrug before I say so",
+        "first nod, then shake your head, then shrug, then cross your arms and finally bow deeply",
+        "raise your right arm, lower it, clap twice, bow and then wave with your left hand",
     ],
 )
 def test_the_rules_alone_read_what_they_read_surely(text: str) -> None:
     assert not needs_networks(read(text))
+
+
+@pytest.mark.parametrize("n", [5, 8])
+def test_no_command_of_a_list_is_left_out(n: int) -> None:
+    """Networks and rules for more than two commands knew four at most, and left out the others without a word."""
+    said = ["nod", "bow", "wave", "clap", "shrug", "salute", "point up", "cross your arms"][:n]
+    reading = read(", ".join(said))
+    assert [command.text for step in reading.steps for command in step] == said and not needs_networks(reading)
 
 
 @pytest.mark.parametrize(
