@@ -51,7 +51,7 @@ def status(at: OmitArgPrefixes[Connection] = Connection(), json: bool = False) -
         "generator": now.generator,
         "recording": now.recording or "-",
         "servos": "; ".join(_servo(s) for s in now.servos_not_ok) or "all ok",
-        "bus": ", ".join(f"{k.replace('_', ' ')} {v}" for k, v in now.bus_info.items()),
+        "bus": ", ".join(f"{k.replace('_', ' ')} {v}" for k, v in now.bus_info.items() if v != ""),
         "up": f"{now.uptime_s:.0f} s",
     }
     table = Table(show_header=False, box=None)

@@ -37,7 +37,7 @@ def understand(
     from mmm_core.language.command_changes import NothingToReferToError
     from mmm_core.language.context import conversation
 
-    if not texts:
+    if not texts or not all(text.strip() for text in texts):
         raise CommandError('no sentence; e.g. mmmd understand "wave with your left hand"')
     try:
         meant = conversation(texts, _read)

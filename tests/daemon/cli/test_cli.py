@@ -60,6 +60,7 @@ def test_every_command_has_help_with_an_example(name, capsys):
         (["say", "a" * 10_000, *NOWHERE], "10000"),
         (["stop", "--ctl", "tcp://192.168.1.5:5872"], "other machines"),
         (["status", "--ctl", "5872"], "ZeroMQ endpoint"),
+        (["understand", "wave", " "], "no sentence"),
         (["generate"], "example"),
         (["generate", "wave"], "--out"),
         (["generate", "wave", "--out", "x.npz", "--seconds", "60"], "0.2 to 9.8"),
