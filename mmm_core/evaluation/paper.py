@@ -144,7 +144,9 @@ def _with_steps(engine: Engine) -> list[tuple[int, Engine]]:
 
 def _with_settings(engine: Engine, **changes: Any) -> Engine:
     settings = replace(engine.settings, **changes)
-    return Engine(engine.model, engine.encoder, engine.checkpoint_hash, settings, reader=engine.reader)
+    return Engine(
+        engine.model, engine.encoder, engine.checkpoint_hash, settings, reader=engine.reader, people=engine.people
+    )
 
 
 @torch.inference_mode()

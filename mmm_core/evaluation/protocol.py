@@ -20,7 +20,7 @@ from mmm_core.evaluation.metrics import Interval
 from mmm_core.evaluation.pairs import Pair
 from mmm_core.evaluation.reader import Motions, Reader
 from mmm_core.generate.engine import Engine
-from mmm_core.model.sampling import empty_row, fill
+from mmm_core.model.sampling import empty_row
 from mmm_core.model.text import TextStates
 from mmm_core.model.tokens import FRAMES_PER_TOKEN
 
@@ -52,7 +52,7 @@ def generate(engine: Engine, pairs: Sequence[Pair], seed: int) -> Motions:
         some = pairs[i : i + GENERATE_BATCH]
         rows = [empty_row(engine.model.transformer, len(p.features) // FRAMES_PER_TOKEN) for p in some]
         states, seeds = text_states(engine, some), seeds_of(some, i, seed)
-        made += decode(engine, fill(engine.model.transformer, states, rows, seeds, engine.settings))
+        made += decode(engine, engine.fill([p.text for p in some], states, rows, seeds))
     return made
 
 

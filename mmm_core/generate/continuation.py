@@ -18,7 +18,7 @@ from mmm_core.generate.interpretation import interpret
 from mmm_core.generate.motion_model import check_seed
 from mmm_core.generate.result import GenerationResult, StageTimer, no_motion, understood_as
 from mmm_core.generate.sequence import COMMAND_STRIDE, TOGETHER_STRIDE, Step, joined, steps_of, stretches_of
-from mmm_core.model.sampling import empty_row, fill
+from mmm_core.model.sampling import empty_row
 from mmm_core.model.tokens import FRAMES_PER_TOKEN, MAX_TOKENS, frames_for_seconds
 from mmm_core.motion.motion import FPS, Motion
 from mmm_core.motion.performing import performed
@@ -87,10 +87,9 @@ def continue_motion(
 
 def _step_ids(engine: Engine, prefix: Tensor, step: Step, seed: int) -> StepIds:
     """The ids of a step, generated after the ids of the prefix."""
-    transformer = engine.model.transformer
     rows: list[Tensor] = []
     for k, command in enumerate(step.commands):
-        row = torch.cat([prefix, empty_row(transformer, step.tokens_of(k))])
-        one = fill(transformer, command.states, [row], [(seed + k * TOGETHER_STRIDE) % 2**31], engine.settings)[0]
+        row = torch.cat([prefix, empty_row(engine.model.transformer, step.tokens_of(k))])
+        one = engine.fill([command.text], command.states, [row], [(seed + k * TOGETHER_STRIDE) % 2**31])[0]
         rows.append(one[len(prefix) :])
     return composed(engine, step.commands, rows)

@@ -15,6 +15,7 @@ from mmm_core.generate.sentence_reader import SentenceReader
 from mmm_core.inference.checkpoint import MODEL_FILE, Model, file_hash, load_model, load_text_encoder
 from mmm_core.inference.int8_linear import convert_to_int8, int8_is_supported
 from mmm_core.inference.onednn_linear import can_pack, can_pack_bf16, fastest_precision, has_bf16_matrix_units, pack
+from mmm_core.inference.people_weights import PeopleWeights, load_people
 from mmm_core.model.sampling import OFFICIAL_SAMPLING, OFFICIAL_UPPER_BODY, SamplingSettings
 from mmm_core.model.text import MiniLm, TextEncoder
 from mmm_core.model.tokens import frames_for_seconds
@@ -43,8 +44,9 @@ class Engine(MotionModel):
         settings: SamplingSettings,
         precision: Precision = "fp32",
         reader: SentenceReader | None = None,
+        people: PeopleWeights | None = None,
     ) -> None:
-        super().__init__(model, encoder, checkpoint_hash, settings, reader)
+        super().__init__(model, encoder, checkpoint_hash, settings, reader, people)
         self.precision: Precision = precision
 
     @classmethod
@@ -100,7 +102,11 @@ class Engine(MotionModel):
         reader = None
         if model.is_ours and model.scope is not None and isinstance(encoder, MiniLm):
             reader = SentenceReader.load(encoder, words)
-        engine = cls(model, encoder, file_hash(path), settings or plain, chosen, reader)
+        checkpoint_hash = file_hash(path)
+        people = load_people(model.transformer, path, checkpoint_hash)
+        if people is not None:
+            pack(people.transformer, words)
+        engine = cls(model, encoder, checkpoint_hash, settings or plain, chosen, reader, people)
         if chosen == "int8":
             pack(
                 model.transformer.word_layers, words

@@ -31,8 +31,7 @@ from mmm_core.generate.sequence import (
 )
 from mmm_core.generate.transitions import TRANSITION_TOKENS
 from mmm_core.language.mirroring import mirror_words
-from mmm_core.model.sampling import FirstStep, SamplingSettings, empty_row, fill, pseudo_log_likelihood
-from mmm_core.model.text import TextStates
+from mmm_core.model.sampling import FirstStep, SamplingSettings, empty_row, pseudo_log_likelihood
 from mmm_core.model.tokens import FRAMES_PER_TOKEN, tokens_for_frames
 from mmm_core.motion.body_parts import BodyPart
 from mmm_core.motion.motion import FPS
@@ -121,7 +120,7 @@ class MotionGeneration:
         step, one_step = self._steps[0], replace(self.settings, steps=1, temperature=0.0)
         rows = [empty_row(self._engine.model.transformer, step.tokens_of(k)) for k in range(len(step.commands))]
         return [
-            self._fill(command.states, [row], [self._seed_of(0, k)], one_step, self._first_steps[k])[0]
+            self._fill(command, [row], [self._seed_of(0, k)], one_step, self._first_steps[k])[0]
             for k, (command, row) in enumerate(zip(step.commands, rows, strict=True))
         ]
 
@@ -161,8 +160,8 @@ class MotionGeneration:
         if n > 1 and i == 0 and self._opens:  # all candidates begin as the preview does
             row[: settings.opening] = self._drafts[k][: settings.opening]
         first = self._first_steps[k] if i == 0 and n == 1 else None
-        candidates = self._fill(command.states, [row] * n, seeds, settings, first)
-        ids = candidates[0] if n == 1 else self._likeliest(command.states, candidates)
+        candidates = self._fill(command, [row] * n, seeds, settings, first)
+        ids = candidates[0] if n == 1 else self._likeliest(command, candidates)
         repetition = self._repetitions[i]
         if repetition is None:
             return ids
@@ -171,24 +170,28 @@ class MotionGeneration:
 
     def _as_said(self, i: int, seed: int) -> Tensor:
         """(L, C) ids of a step of one command whose strokes cannot be repeated: the model makes as many as it can."""
-        states = self._read.steps[i][0].states
-        row = empty_row(self._engine.model.transformer, tokens_for_frames(self._engine.predicted_frames(states)))
-        return self._fill(states, [row], [seed], self.settings)[0]
+        command = self._read.steps[i][0]
+        row = empty_row(
+            self._engine.model.transformer, tokens_for_frames(self._engine.predicted_frames(command.states))
+        )
+        return self._fill(command, [row], [seed], self.settings)[0]
 
     def _seed_of(self, i: int, k: int) -> int:
         """The seed of the k-th command of a step."""
         return (self._seed + i * COMMAND_STRIDE + k * TOGETHER_STRIDE) % 2**31
 
-    def _likeliest(self, states: TextStates, candidates: Sequence[Tensor]) -> Tensor:
-        likely = pseudo_log_likelihood(self._engine.model.transformer, states.repeated(len(candidates)), candidates)
+    def _likeliest(self, command: ReadCommand, candidates: Sequence[Tensor]) -> Tensor:
+        people = self._engine.weights_for(command.text, command.states.sentence[0])
+        transformer = self._engine.model.transformer if people is None else people.transformer
+        likely = pseudo_log_likelihood(transformer, command.states.repeated(len(candidates)), candidates)
         return candidates[int(likely.argmax())]
 
     def _fill(
-        self, states: TextStates, rows: Sequence[Tensor], seeds: Sequence[int], settings: SamplingSettings,
+        self, command: ReadCommand, rows: Sequence[Tensor], seeds: Sequence[int], settings: SamplingSettings,
         first: FirstStep | None = None,
     ) -> list[Tensor]:  # fmt: skip
-        states = states if len(rows) == 1 else states.repeated(len(rows))
-        return fill(self._engine.model.transformer, states, rows, seeds, settings, first=first)
+        states = command.states if len(rows) == 1 else command.states.repeated(len(rows))
+        return self._engine.fill([command.text] * len(rows), states, rows, seeds, settings, first)
 
     def _result_of(self, ids: Tensor, made: Sequence[StepIds], n_frames: int | None, lap: str) -> GenerationResult:
         verdict, mirrored = self._verdict, self._mirrored

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from itertools import islice
 
 import numpy as np
@@ -12,10 +13,11 @@ from torch import Tensor
 from mmm_core.errors import GenerationError
 from mmm_core.generate.sentence_reader import SentenceReader
 from mmm_core.inference.checkpoint import Model
+from mmm_core.inference.people_weights import PeopleWeights
 from mmm_core.language.commands import PlainCommand, Reading, read_exactly
 from mmm_core.language.scope import ScopeVerdict, clauses_of, unreadable, with_clauses
 from mmm_core.model.clip import ClipText
-from mmm_core.model.sampling import SamplingSettings
+from mmm_core.model.sampling import FirstStep, SamplingSettings, fill
 from mmm_core.model.text import TextEncoder, TextStates, strip_emoji
 from mmm_core.model.tokens import FRAMES_PER_TOKEN, pack_ids, tokens_for_frames, unpack_ids
 from mmm_core.motion.features import Root, mirror, recover, recover_from_positions
@@ -34,6 +36,7 @@ class MotionModel:
         checkpoint_hash: names the checkpoint in every motion and answer.
         settings: how tokens are sampled.
         reader: reads texts; None for a model that is given every text as it is.
+        people: weights for captions of people; None for a model that fills all rows with the same weights.
     """
 
     def __init__(
@@ -43,12 +46,14 @@ class MotionModel:
         checkpoint_hash: str,
         settings: SamplingSettings,
         reader: SentenceReader | None = None,
+        people: PeopleWeights | None = None,
     ) -> None:
         self.model = model
         self.encoder = encoder
         self.checkpoint_hash = checkpoint_hash
         self.settings = settings
         self.reader = reader
+        self.people = people
 
     def understand(self, text: str) -> tuple[TextStates, ScopeVerdict]:
         """States of a text in plain words (`mmm_core.language.reading`) and its scope verdict."""
@@ -118,6 +123,40 @@ class MotionModel:
         if self.model.length is None:
             raise GenerationError("no length was asked for", "seconds: this model was not trained to choose a length")
         return max(SHORTEST_TOKENS, self.model.length.n_tokens(states)[0]) * FRAMES_PER_TOKEN
+
+    def fill(
+        self,
+        words: Sequence[str],
+        states: TextStates,
+        rows: Sequence[Tensor],
+        seeds: Sequence[int],
+        settings: SamplingSettings | None = None,
+        first: FirstStep | None = None,
+    ) -> list[Tensor]:
+        """Fill the [MASK]s of `rows`, each with the weights for its words (`weights_for`).
+
+        Args:
+            words: B commands or captions.
+            states: their states.
+            rows: as in `mmm_core.model.sampling.fill`.
+            seeds: one for each row.
+            settings: how tokens are sampled; the model's own when None.
+            first: as in `mmm_core.model.sampling.fill`.
+        """
+        how, made = settings or self.settings, dict[int, Tensor]()
+        weights = [self.weights_for(*one) for one in zip(words, states.sentence, strict=True)]
+        for people in set(weights):
+            mine = [i for i, one in enumerate(weights) if one is people]
+            transformer = self.model.transformer if people is None else people.transformer
+            guided = how if people is None else replace(how, guidance=people.guidance)
+            theirs = states if len(mine) == len(words) else TextStates.stacked([states.row(i) for i in mine])
+            filled = fill(transformer, theirs, [rows[i] for i in mine], [seeds[i] for i in mine], guided, first=first)
+            made |= dict(zip(mine, filled, strict=True))
+        return [made[i] for i in range(len(words))]
+
+    def weights_for(self, words: str, sentence: Tensor) -> PeopleWeights | None:
+        """The weights for words with their sentence vector (D,); None: the model's own, for all but captions of people."""
+        return self.people if self.people is not None and self.people.are_for(words, sentence) else None
 
     def motion(
         self,

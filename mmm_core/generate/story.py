@@ -30,7 +30,7 @@ from mmm_core.generate.sequence import (
 )
 from mmm_core.generate.transitions import transitions
 from mmm_core.language.scope import ScopeVerdict
-from mmm_core.model.sampling import empty_row, fill
+from mmm_core.model.sampling import empty_row
 from mmm_core.model.streaming_decoder import StreamingDecoder
 from mmm_core.model.text import TextStates
 from mmm_core.model.tokens import FRAMES_PER_TOKEN, frames_for_seconds
@@ -203,8 +203,8 @@ def _segments(engine: Engine, scenes: list[tuple[int, Scene]], seed: int) -> lis
         ]
     flat = [(c, step.tokens_of(k)) for steps in asked for step in steps for k, c in enumerate(step.commands)]
     rows = [empty_row(engine.model.transformer, n) for _, n in flat]
-    texts = [c.states for c, _ in flat]
-    made = iter(fill(engine.model.transformer, TextStates.stacked(texts), rows, seeds, engine.settings) if rows else [])
+    words, texts = [c.text for c, _ in flat], [c.states for c, _ in flat]
+    made = iter(engine.fill(words, TextStates.stacked(texts), rows, seeds) if rows else [])
     nothing = torch.zeros(0, engine.model.tokenizer.n_codebooks, dtype=torch.int64)
     return [
         _Segment(scene, one.verdict, steps, _ids(engine, steps, made, seed) if steps else nothing)

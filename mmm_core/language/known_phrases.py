@@ -24,8 +24,8 @@ CAPTION_SUBJECT = (
     r"(?:(?:the|an?|this|some) (?:\w+ )?(?:person|man|woman|human|humanoid|robot|character|figure)|someone|somebody)\b"
 )
 """Pattern of the subject of a caption of one motion, such as the corpus has: "a man is shooting out their right hand"."""
-_SUBJECT = re.compile(rf"^\s*{CAPTION_SUBJECT} (?=(?:is )?\w+(?:s|ing)\b)")
-"""The subject before a verb: "this person shifts from foot to foot"."""
+PERSON_ACTS = re.compile(rf"^\s*{CAPTION_SUBJECT} (?=(?:is )?\w+(?:s|ing)\b)")
+"""Pattern of that subject before its verb, without the verb: "this person shifts from foot to foot"."""
 BESIDE = re.compile(
     r"(?:,? (?:exactly|just|only))* (?:(?:\w+ times?|a single time)(?: in a row)?|once|twice)\b|"
     r"(?: with| using) (?:the|your|their|his|her|its|both) (?:left |right )?(?:arm|hand)s?\b"
@@ -53,7 +53,7 @@ def key_of(text: str) -> int | None:
 
 def significant_words(text: str, *, with_arms: bool = False) -> list[str]:
     """The stems of the words of a text that say which gesture is meant, `with_arms` also those for arms and hands."""
-    words = [word for word in _WORD.findall(_SUBJECT.sub("", text.lower())) if word not in _SAYS_NOTHING]
+    words = [word for word in _WORD.findall(PERSON_ACTS.sub("", text.lower())) if word not in _SAYS_NOTHING]
     return [stem(word) for word in words if not word.isdigit() and (with_arms or word not in _ARMS)]
 
 

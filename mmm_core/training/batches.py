@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -42,6 +42,11 @@ class Clip:
     is_real: bool
     n_seen: int = 0
     n_rest: int = 0
+
+
+def captions_of_people(clips: Iterable[Clip]) -> list[str]:
+    """The captions of people's clips, each once."""
+    return sorted({caption for clip in clips if clip.is_real for caption in clip.captions})
 
 
 def cut_to_tokens(clip: Clip, generator: np.random.Generator) -> Clip:

@@ -107,13 +107,25 @@ class TokenizerRecipe:
 
 @dataclass(frozen=True)
 class TransformerRecipe:
-    """The masked transformer; sizes that follow from the tokenizer and the text encoder are not settings."""
+    """The masked transformer; sizes that follow from the tokenizer and the text encoder are not settings.
+
+    Attributes:
+        width, n_heads, n_cross, n_self, dropout: as in `TransformerConfig`.
+        rank: rank of the changes of the start's matrices that are trained in place of all weights, and written instead of a
+            checkpoint (`mmm_core.inference.people_weights`); 0 trains all weights.
+        guidance: guidance with which changed weights are sampled.
+        tokens_per_batch: tokens of a batch.
+        corruption: shares of a motion that are masked.
+        schedule: steps and learning rate.
+    """
 
     width: int = 256
     n_heads: int = 8
     n_cross: int = 2
     n_self: int = 6
     dropout: float = 0.1
+    rank: int = 0
+    guidance: float = 1.0
     tokens_per_batch: int = TOKENS_PER_BATCH
     corruption: Corruption = field(default_factory=Corruption)
     schedule: Schedule = field(default_factory=lambda: Schedule(steps=6200, learning_rate=1e-3))

@@ -27,7 +27,7 @@ from mmm_core.inference.checkpoint import load_model, load_text_encoder, save_mo
 from mmm_core.language.known_phrases import is_known_phrase
 from mmm_core.language.scope import ScopeClassifier, ScopeIndex, clauses_of
 from mmm_core.model.text import TextEncoder
-from mmm_core.training.batches import CORPUS, Clip, load_clips
+from mmm_core.training.batches import CORPUS, Clip, captions_of_people, load_clips
 from mmm_core.training.recipe import Recipe, ScopeRecipe
 
 log = logging.getLogger(__name__)
@@ -73,7 +73,7 @@ def renew_scope(recipe: Recipe, made: Path, out: Path) -> None:
 
 def own_captions(recipe: Recipe, clips: Iterable[Clip]) -> list[str]:
     """Captions of people's clips, each once; none unless the recipe counts them as in scope."""
-    return sorted({c for clip in clips if clip.is_real for c in clip.captions}) if recipe.scope.own_captions else []
+    return captions_of_people(clips) if recipe.scope.own_captions else []
 
 
 def scope_sentences(recipe: ScopeRecipe) -> tuple[list[str], list[str]]:

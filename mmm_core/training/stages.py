@@ -42,6 +42,7 @@ from mmm_core.training.batches import (
     load_clips,
     save_clips,
 )
+from mmm_core.training.caption_training import check_start_and_clips
 from mmm_core.training.evaluator_training import train_evaluator
 from mmm_core.training.fresh import WEIGHTS_FILE, FreshClips, make_round, read_weights
 from mmm_core.training.provenance import hours_of, provenance
@@ -233,8 +234,14 @@ class Stages:
 
     @cached_property
     def transformer(self) -> MotionTransformer:
-        """The trained transformer."""
+        """The trained transformer; with changes if the recipe has a rank.
+
+        Raises:
+            TrainingDataError: the recipe has a rank, but no start or no clip of a person.
+        """
         how, tokenizer = self.recipe.transformer, self.tokenizer
+        if how.rank:
+            check_start_and_clips(self.start, self.clips, self.run.folder)
         tuned = self.recipe.text.tuned_layers
         config = how.config(tokenizer.config, tokenizer.n_codebooks, self.corpus.captions.words.shape[1], tuned)
         texts = self.text.encode(list(SAMPLE_TEXTS))
@@ -247,7 +254,7 @@ class Stages:
         start = None if self.start is None else self.start.transformer
         return train_transformer(
             self.fresh or self.corpus, tokenizer, config, how.schedule, run, how.corruption, how.tokens_per_batch, start,
-            self.text.layers if isinstance(self.text, MiniLm) else None, self.recipe.text.tuned_rate,
+            self.text.layers if isinstance(self.text, MiniLm) else None, self.recipe.text.tuned_rate, how.rank,
         )  # fmt: skip
 
     @cached_property
@@ -291,10 +298,3 @@ class Stages:
     @property
     def _fps(self) -> float:
         return FPS if self.folder is None else self.folder.fps
-
-
-def make_model(recipe: Recipe, run: Run, data: Path | None, out: Path) -> None:
-    """Run every unfinished stage and write the checkpoint to `out`."""
-    model = Stages(recipe, run, data).model()
-    if distributed.rank() == 0:
-        save_model(out, model, half=model.text is None)

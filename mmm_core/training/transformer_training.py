@@ -16,6 +16,7 @@ from torch import Tensor, nn
 
 from mmm_core import distributed
 from mmm_core.model.length import LengthClassifier
+from mmm_core.model.low_rank import add_changes
 from mmm_core.model.text import TextStates
 from mmm_core.model.tokenizer import Tokenizer
 from mmm_core.model.transformer import MotionTransformer, TransformerConfig
@@ -147,6 +148,7 @@ def train_transformer(
     start: MotionTransformer | None = None,
     words: nn.ModuleList | None = None,
     words_rate: float = 1.0,
+    rank: int = 0,
 ) -> MotionTransformer:
     """A transformer trained by eq. 2, or by eq. 3 if `config` predicts only the first codebooks.
 
@@ -161,6 +163,7 @@ def train_transformer(
         start: model of these sizes whose weights are trained further; None begins with new weights.
         words: layers of the text encoder; the last ones are copied into the word layers of `config`, unless `start` has them.
         words_rate: learning rate of the word layers, as a share of the schedule's.
+        rank: rank of the changes of the start's matrices that are trained alone (`mmm_core.model.low_rank`); 0 trains all weights.
     """
     how = how or Corruption()
     torch.manual_seed(schedule.seed)
@@ -171,6 +174,8 @@ def train_transformer(
     if start is not None:
         mine = model.state_dict()
         model.load_state_dict(mine | {name: t for name, t in start.state_dict().items() if name in mine})
+    if rank:
+        add_changes(model, rank)
     K, P = config.n_codes, config.n_out
     device = run.torch_device
 

@@ -14,7 +14,7 @@ import torch
 from daemon.cli import main
 from mmm_core.corpus.plain_commands import known_commands
 from mmm_core.model.text import MiniLm, TextEncoder
-from mmm_core.training import samples, scope_training
+from mmm_core.training import caption_training, samples, scope_training
 from mmm_core.training.batches import CaptionStates
 
 SCHEDULE = "steps = {steps}\nlearning_rate = 1e-3\nwarmup_steps = 2\nsave_every = 3\n"
@@ -89,6 +89,7 @@ def quick_parts() -> Iterator[None]:
         patch.setattr(samples, "INSTANTS", 2)  # most of the time of a picture is its axes
         patch.setattr(scope_training, "known_commands", lambda *_: set(index_commands()))
         patch.setattr(scope_training, "OUTSIDE", scope_training.OUTSIDE[::8])
+        patch.setattr(caption_training, "N_SENTENCES", 40)
         yield
 
 

@@ -57,7 +57,8 @@ def train(
     choice and manner begin anew). Recipes that
     ship: small (a small model from nothing in minutes, to try things with), compact (a model from nothing, about four hours
     on two CPU cores), compact_deterministic (the model in this package
-    trained further, an hour and a half on one core), compact_lengths (its length predictor anew) and paper (MMM as published;
+    trained further, an hour and a half on one core), compact_lengths (its length predictor anew), people (a change of
+    the shipped weights for captions of people, forty minutes on one core) and paper (MMM as published;
     a GPU and HumanML3D). Several GPUs or machines: start it with torchrun. OMP_WAIT_POLICY=passive helps on a busy machine.
 
     Example: mmmd train --config small --run runs/small --out small.safetensors
@@ -67,6 +68,9 @@ def train(
     Example, the paper's tokenizer: mmmd train tokenizer --config paper --data HumanML3D --device cuda --precision bf16
 
     Example, from the shipped model on: mmmd train --config compact_deterministic --data DIR --out more.safetensors
+
+    Example, weights for captions of people, to lie beside the shipped checkpoint: mmmd train --config people --data DIR
+    --run runs/people --out mmm_compact_people.safetensors
 
     Example, only the scope of a finished run anew: mmmd train scope --run runs/compact --out model.safetensors
 
@@ -117,10 +121,11 @@ def train(
     import torch
 
     from mmm_core import distributed
+    from mmm_core.training.make_model import make_model
     from mmm_core.training.recipe import read_recipe
     from mmm_core.training.run import Run
     from mmm_core.training.scope_training import renew_scope
-    from mmm_core.training.stages import Stages, make_model
+    from mmm_core.training.stages import Stages
 
     logging.basicConfig(level=logging.INFO, format="%(message)s")
     torch.set_num_threads(threads)

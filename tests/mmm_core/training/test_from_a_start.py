@@ -11,7 +11,8 @@ import torch
 
 from daemon.cli import main
 from mmm_core.generate.engine import Engine
-from mmm_core.inference.checkpoint import load_model, load_text_encoder, save_model
+from mmm_core.inference.checkpoint import file_hash, load_model, load_tensors, load_text_encoder, save_model
+from mmm_core.inference.people_weights import people_file
 from mmm_core.training.recipe import read_recipe
 from mmm_core.training.run import Run, Schedule
 from mmm_core.training.run import train as run_stage
@@ -72,6 +73,35 @@ def test_a_recipe_goes_on_from_a_finished_model(
     assert "which the run began with" in capsys.readouterr().err
     assert main(["train", "tokenizer", "--config", str(config), "--run", str(run)]) == 2
     assert "whose tokenizer stays" in capsys.readouterr().err
+
+
+def test_a_recipe_with_a_rank_writes_changes_that_its_start_uses(
+    tmp_path: Path, finished: Finished, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The start is not changed; captions of people have other motions with the changes beside it, gestures have the same."""
+    start = tmp_path / "model.safetensors"
+    shutil.copy(finished.model, start)
+    plain = Engine.load(start, threads=None, precision="fp32")
+    config, out = small(tmp_path / "people.toml", steps=8), people_file(start)
+    ranked = config.read_text().replace("[transformer]\n", "[transformer]\nrank = 2\nguidance = 1.5\n")
+    config.write_text(f'start = "{start}"\n{ranked}')
+    arguments = ["train", "--config", str(config), "--sample-every", "0", "--out", str(out), "--run"]
+    assert main([*arguments, str(tmp_path / "without")]) == 1 and "no clip of a person" in capsys.readouterr().err
+    data = tmp_path / "data"
+    data.mkdir()
+    motion = plain.generate("wave", seed=1, seconds=3).motion
+    np.save(data / "dribble.npy", motion.joints_m)
+    (data / "clips.jsonl").write_text('{"trial": "dribble", "captions": ["a person dribbles a basketball"]}\n')
+    assert main([*arguments, str(tmp_path / "run"), "--data", str(data)]) == 0
+    tensors, metadata = load_tensors(out, "mmmd-people")
+    assert tensors["head.up"].shape == (3 * 16, 2) and tensors["head.up"].abs().max() > 0
+    assert metadata["guidance"] == 1.5 and metadata["provenance"]["start"]["sha256"] == file_hash(finished.model)
+    engine = Engine.load(start, threads=None, precision="fp32")
+    assert engine.people is not None and plain.people is None
+    for name, tensor in plain.model.transformer.state_dict().items():
+        assert torch.equal(engine.model.transformer.state_dict()[name], tensor), name
+    config.write_text(ranked)
+    assert main(["train", "transformer", "--config", str(config), "--run", str(tmp_path / "new")]) == 1
 
 
 @pytest.mark.long
@@ -178,6 +208,6 @@ def test_a_share_of_the_learning_rate_for_a_part(tmp_path: Path) -> None:
     assert moved["slow.weight"] == pytest.approx(1e-3, rel=1e-2)
 
 
-@pytest.mark.parametrize("recipe", ["ablation", "compact_deterministic", "compact_lengths"])
+@pytest.mark.parametrize("recipe", ["ablation", "compact_deterministic", "compact_lengths", "people"])
 def test_the_recipes_that_go_on_fit_the_shipped_model(tmp_path: Path, recipe: str) -> None:
     assert Stages(read_recipe(recipe), Run(tmp_path)).start is not None

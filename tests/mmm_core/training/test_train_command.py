@@ -127,11 +127,19 @@ def test_a_bad_recipe_is_named_by_its_key(tmp_path: Path, change: str, message: 
 
 
 def test_an_unknown_recipe_lists_those_that_ship(capsys: pytest.CaptureFixture[str]) -> None:
-    assert known_recipes() == ["ablation", "compact", "compact_deterministic", "compact_lengths", "paper", "small"]
+    assert known_recipes() == [
+        "ablation",
+        "compact",
+        "compact_deterministic",
+        "compact_lengths",
+        "paper",
+        "people",
+        "small",
+    ]
     for name in known_recipes():
         read_recipe(name)
     assert main(["train", "--config", "nothing"]) == 2
-    assert "ablation, compact, compact_deterministic, compact_lengths, paper" in capsys.readouterr().err
+    assert "ablation, compact, compact_deterministic, compact_lengths, paper, people" in capsys.readouterr().err
 
 
 def test_the_papers_recipe_has_the_released_sizes() -> None:
