@@ -89,9 +89,8 @@ class Connection:
             waited_s = time.monotonic() - began_s
             if waited_s >= timeout_s:
                 raise NoAnswerError(endpoint, asked, timeout_s)
-            if not socket.poll(
-                0, zmq.POLLOUT
-            ):  # with IMMEDIATE, there is room for a message only while there is a connection
+            # With IMMEDIATE there is room for a message only while there is a connection; an answer may have come before its end.
+            if not socket.poll(0, zmq.POLLIN | zmq.POLLOUT):
                 raise ConnectionLostError(endpoint, asked, waited_s)
         return decode_event(socket.recv())
 

@@ -27,20 +27,22 @@ class NoAnswerError(DaemonError, TimeoutError):
 
     def __init__(self, endpoint: str, asked: str, timeout_s: float) -> None:
         self.endpoint, self.asked, self.timeout_s = endpoint, asked, timeout_s
+        super().__init__(self._message())
+
+    def _message(self) -> str:
         do = "is `mmmd run` running there? Start it, or name its port with --cmd, --ctl, --pub"
-        if endpoint.startswith("tcp://"):
+        if self.endpoint.startswith("tcp://"):
             do += "; a daemon with keys answers nobody without an allowed one (--keys, `mmmd keys --help`)"
-        super().__init__(f"{asked}: no answer from {endpoint} in {timeout_s:g} s; {do}")
+        return f"{self.asked}: no answer from {self.endpoint} in {self.timeout_s:g} s; {do}"
 
 
 class ConnectionLostError(NoAnswerError):
-    """The connection broke while an answer was awaited, so that none can come."""
+    """The connection broke while an answer was awaited, so that none can come; `timeout_s` is how long it was awaited."""
 
-    def __init__(self, endpoint: str, asked: str, waited_s: float) -> None:
-        super().__init__(endpoint, asked, waited_s)
-        self.args = (
-            f"{asked}: {endpoint} was lost after {waited_s:.1f} s: the daemon ended, or a network in between; what it was doing is "
-            f"unknown: look at the robot, start `mmmd run` again, and say it again",
+    def _message(self) -> str:
+        return (
+            f"{self.asked}: {self.endpoint} was lost after {self.timeout_s:.1f} s: the daemon ended, or a network in between; what "
+            f"it was doing is unknown: look at the robot, start `mmmd run` again, and say it again"
         )
 
 

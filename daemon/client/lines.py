@@ -63,7 +63,8 @@ class Line:
             waited_s = time.monotonic() - began_s
             if waited_s >= timeout_s:
                 raise NoAnswerError(self.endpoint, asked, timeout_s)
-            if not await self._socket.poll(0, zmq.POLLOUT):  # type: ignore[call-arg]  # as in `Connection._receive`
+            connected = await self._socket.poll(0, zmq.POLLOUT)  # type: ignore[call-arg]  # as in `Connection._receive`
+            if not connected and heard.empty():
                 raise ConnectionLostError(self.endpoint, asked, waited_s)
 
     async def close(self) -> None:

@@ -11,7 +11,7 @@ import re
 from mmm_core.language.known_phrases import BESIDE, CAPTION_SUBJECT, is_known_phrase, key_of
 from mmm_core.language.limbs import begins_with_a_verb
 
-_PERSON_ACTS = re.compile(
+_SUBJECT_AND_VERB = re.compile(
     rf"\s*(?:{CAPTION_SUBJECT}|(?:an? |the )?(?:(?:standing|young|old) )?(?:person|dancer)\b)"
     r"(?: that| who)?(?: is| \w+ly)* (\w+?)(?:s|ing)\b"
 )
@@ -25,7 +25,7 @@ def may_be_of_people(text: str) -> bool:
     (True, False)
     """
     said = text.lower()
-    acts = _PERSON_ACTS.match(said)
+    acts = _SUBJECT_AND_VERB.match(said)
     if acts is None or is_known_phrase(said) or is_known_phrase(BESIDE.sub("", said)):
         return False
     return key_of(said) is not None or not _is_gesture(acts[1])

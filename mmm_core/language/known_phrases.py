@@ -24,7 +24,7 @@ CAPTION_SUBJECT = (
     r"(?:(?:the|an?|this|some) (?:\w+ )?(?:person|man|woman|human|humanoid|robot|character|figure)|someone|somebody)\b"
 )
 """Pattern of the subject of a caption of one motion, such as the corpus has: "a man is shooting out their right hand"."""
-PERSON_ACTS = re.compile(rf"^\s*{CAPTION_SUBJECT} (?=(?:is )?\w+(?:s|ing)\b)")
+SUBJECT_BEFORE_VERB = re.compile(rf"^\s*{CAPTION_SUBJECT} (?=(?:is )?\w+(?:s|ing)\b)")
 """Pattern of that subject before its verb, without the verb: "this person shifts from foot to foot"."""
 BESIDE = re.compile(
     r"(?:,? (?:exactly|just|only))* (?:(?:\w+ times?|a single time)(?: in a row)?|once|twice)\b|"
@@ -53,7 +53,7 @@ def key_of(text: str) -> int | None:
 
 def significant_words(text: str, *, with_arms: bool = False) -> list[str]:
     """The stems of the words of a text that say which gesture is meant, `with_arms` also those for arms and hands."""
-    words = [word for word in _WORD.findall(PERSON_ACTS.sub("", text.lower())) if word not in _SAYS_NOTHING]
+    words = [word for word in _WORD.findall(SUBJECT_BEFORE_VERB.sub("", text.lower())) if word not in _SAYS_NOTHING]
     return [stem(word) for word in words if not word.isdigit() and (with_arms or word not in _ARMS)]
 
 

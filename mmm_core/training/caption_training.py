@@ -19,7 +19,7 @@ from mmm_core.corpus.synthesis import draw_spec
 from mmm_core.corpus.withheld import is_withheld
 from mmm_core.errors import TrainingDataError
 from mmm_core.inference.checkpoint import Model
-from mmm_core.language.known_phrases import PERSON_ACTS
+from mmm_core.language.known_phrases import SUBJECT_BEFORE_VERB
 from mmm_core.model.text import TextEncoder
 from mmm_core.training.batches import Clip, captions_of_people
 from mmm_core.training.scope_training import sentence_vectors
@@ -58,7 +58,7 @@ def corpus_sentences(n: int, seed: int = SEED) -> list[str]:
     while len(found) < n:
         spec = draw_spec(rng)
         said = caption(list(spec.gestures), spec.parallel, rng)
-        found += [said] if PERSON_ACTS.match(said.lower()) and not is_withheld(said) else []
+        found += [said] if SUBJECT_BEFORE_VERB.match(said.lower()) and not is_withheld(said) else []
     return found
 
 

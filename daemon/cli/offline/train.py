@@ -58,7 +58,7 @@ def train(
     ship: small (a small model from nothing in minutes, to try things with), compact (a model from nothing, about four hours
     on two CPU cores), compact_deterministic (the model in this package
     trained further, an hour and a half on one core), compact_lengths (its length predictor anew), people (a change of
-    the shipped weights for captions of people, forty minutes on one core) and paper (MMM as published;
+    the shipped weights for captions of people, 46 minutes on one core) and paper (MMM as published;
     a GPU and HumanML3D). Several GPUs or machines: start it with torchrun. OMP_WAIT_POLICY=passive helps on a busy machine.
 
     Example: mmmd train --config small --run runs/small --out small.safetensors

@@ -220,7 +220,7 @@ def takes_it(frame: bytes) -> list[bytes]:
 
 @pytest.mark.parametrize("loop", [False, True])
 def test_a_daemon_that_ends_ends_the_wait_for_a_motion(endpoints, loop):
-    """It lasted a minute, and with `loop` for ever."""
+    """The client waited a minute for an answer that could not come, and for ever with `loop`."""
     with contextlib.ExitStack() as stack:
         peer = Peer(endpoints.cmd, takes_it)
         client = stack.enter_context(Client(endpoints))

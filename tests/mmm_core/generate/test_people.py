@@ -76,7 +76,7 @@ def test_candidates_of_a_caption_are_judged(engine: Engine) -> None:
 
 
 def test_few_sentences_of_the_corpus_and_no_probe_are_taken_for_captions(engine: Engine) -> None:
-    """Two in a hundred third-person sentences are allowed; 1.0 of 3,000 were, as they stand (docs/model.md)."""
+    """Two of a hundred third-person sentences may be taken; of 3,000 fresh ones 23 were (docs/model.md)."""
     texts = [*(p.text for p in PROBES[::4]), *corpus_sentences(100, seed=41)]
     commands = [c for one in interpret_all(engine, texts) for step in one.steps for c in step]
     assert len(commands) > 150
