@@ -34,6 +34,7 @@ from mmm_core.language.contrasts import contrasted
 from mmm_core.language.denial import surely_denies
 from mmm_core.language.gesture_steps import NO_GESTURE, GestureSteps, is_all_gestures
 from mmm_core.language.hard_phrases import without_hard_phrases
+from mmm_core.language.impossible_counts import within_counts
 from mmm_core.language.joined import with_parted_commands
 from mmm_core.language.manner_words import likely_manners
 from mmm_core.language.meant_command import with_meant_command
@@ -101,7 +102,7 @@ class SentenceReader:
         found = without_denied_arm(with_said_arm(self._read(text)))
         if text.startswith(EXACTLY):
             return found
-        found = without_hard_phrases(text, with_pointed_numbers(found, self._models))
+        found = without_hard_phrases(text, with_pointed_numbers(within_counts(found), self._models))
         return with_plain_repetitions(found, self._models.classes)
 
     def _read(self, text: str) -> Reading:

@@ -36,7 +36,7 @@ _STOP_PHRASES = tuple(
     you re doing, what you do, do not move a muscle, dont move a muscle, do not move, dont move, never move, no more
     moving, no moving, no more movement, not another move, not a move, no further, knock it off, cut it out, give it a
     rest, do not do anything, dont do anything, do nothing, do not do that, dont do that, do not do it, dont do it, no more
-    of that
+    of that, never mind, nevermind, forget it, forget that, forget about it, scrap that
     """.split(",")
 )
 """Phrases that stop, or that only name the motion that is to stop."""

@@ -14,6 +14,7 @@ from mmm_core.model.tokenizer import TokenizerConfig
 from mmm_core.model.transformer import TransformerConfig
 from mmm_core.model.vqvae import VqVaeConfig
 from mmm_core.training.fresh import FreshRecipe
+from mmm_core.training.motion_loss import MotionLoss
 from mmm_core.training.run import Schedule
 from mmm_core.training.transformer_training import TOKENS_PER_BATCH, Corruption
 
@@ -116,6 +117,7 @@ class TransformerRecipe:
         guidance: guidance with which changed weights are sampled.
         tokens_per_batch: tokens of a batch.
         corruption: shares of a motion that are masked.
+        motion_loss: how much the motion that predicted ids decode to counts beside the ids (layout "parts").
         schedule: steps and learning rate.
     """
 
@@ -128,6 +130,7 @@ class TransformerRecipe:
     guidance: float = 1.0
     tokens_per_batch: int = TOKENS_PER_BATCH
     corruption: Corruption = field(default_factory=Corruption)
+    motion_loss: MotionLoss = field(default_factory=MotionLoss)
     schedule: Schedule = field(default_factory=lambda: Schedule(steps=6200, learning_rate=1e-3))
 
     def config(

@@ -254,7 +254,7 @@ class Stages:
         start = None if self.start is None else self.start.transformer
         return train_transformer(
             self.fresh or self.corpus, tokenizer, config, how.schedule, run, how.corruption, how.tokens_per_batch, start,
-            self.text.layers if isinstance(self.text, MiniLm) else None, self.recipe.text.tuned_rate, how.rank,
+            self.text.layers if isinstance(self.text, MiniLm) else None, self.recipe.text.tuned_rate, how.rank, how.motion_loss,
         )  # fmt: skip
 
     @cached_property

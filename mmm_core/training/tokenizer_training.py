@@ -101,7 +101,7 @@ def train_tokenizer(
             positions = F.smooth_l1_loss(reconstruction[..., 4:end], x[..., 4:end])
             loss = frames + how.positions * positions + how.commitment * commitment
             return {"loss": loss, "frames": frames, "positions": positions, "commitment": commitment}
-        frames, differences = _errors(reconstruction, x, weights)
+        frames, differences = motion_errors(reconstruction, x, weights)
         loss = frames + DIFFERENCE_WEIGHT * differences + (LATENT_SQUARE if plain else COMMITMENT) * commitment
         return {"loss": loss, "frames": frames, "differences": differences, "commitment": commitment}
 
@@ -119,7 +119,7 @@ def go_on_with_tokenizer(
     def loss_fn(_step: int, generator: torch.Generator) -> dict[str, Tensor]:
         x = tokenizer.normalise(draw(generator)[distributed.share(BATCH)].to(device))
         reconstruction, commitment = tokenizer(x)
-        frames, differences = _errors(reconstruction.float(), x, weights)
+        frames, differences = motion_errors(reconstruction.float(), x, weights)
         loss = frames + DECODER_DIFFERENCE_WEIGHT * differences + COMMITMENT * commitment
         return {"loss": loss, "frames": frames, "differences": differences, "commitment": commitment}
 
@@ -138,7 +138,7 @@ def tune_decoder(
         features = draw(generator)[distributed.share(BATCH)].to(device)
         with torch.no_grad():
             vectors = tokenizer.embed(tokenizer.encode(features))
-        frames, differences = _errors(tokenizer.decoder(vectors).float(), tokenizer.normalise(features), weights)
+        frames, differences = motion_errors(tokenizer.decoder(vectors).float(), tokenizer.normalise(features), weights)
         return {"loss": frames + DECODER_DIFFERENCE_WEIGHT * differences, "frames": frames, "differences": differences}
 
     train(tokenizer.decoder, loss_fn, schedule, run, "decoder")
@@ -160,7 +160,7 @@ def _set_statistics(
         tokenizer.height_std.copy_(heights.std(0).clamp_min(0.02))
 
 
-def _errors(reconstruction: Tensor, x: Tensor, weights: Tensor) -> tuple[Tensor, Tensor]:
+def motion_errors(reconstruction: Tensor, x: Tensor, weights: Tensor) -> tuple[Tensor, Tensor]:
     """Weighted errors of frames and of differences between frames."""
     frames = (F.smooth_l1_loss(reconstruction, x, beta=BETA, reduction="none") * weights).mean()
     gain = DIFFERENCE_GAIN

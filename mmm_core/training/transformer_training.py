@@ -6,6 +6,7 @@ the cross-entropy at every motion position. Text dropout (ours) makes guidance p
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -23,6 +24,7 @@ from mmm_core.model.transformer import MotionTransformer, TransformerConfig
 from mmm_core.model.vqvae import VqVae
 from mmm_core.training.batches import TokenCorpus, length_buckets
 from mmm_core.training.fresh import FreshClips
+from mmm_core.training.motion_loss import MotionLoss, error_measure
 from mmm_core.training.run import Run, Schedule, train
 
 TOKENS_PER_BATCH = 1100
@@ -149,6 +151,7 @@ def train_transformer(
     words: nn.ModuleList | None = None,
     words_rate: float = 1.0,
     rank: int = 0,
+    motion_loss: MotionLoss | None = None,
 ) -> MotionTransformer:
     """A transformer trained by eq. 2, or by eq. 3 if `config` predicts only the first codebooks.
 
@@ -164,6 +167,7 @@ def train_transformer(
         words: layers of the text encoder; the last ones are copied into the word layers of `config`, unless `start` has them.
         words_rate: learning rate of the word layers, as a share of the schedule's.
         rank: rank of the changes of the start's matrices that are trained alone (`mmm_core.model.low_rank`); 0 trains all weights.
+        motion_loss: how much the decoded motion counts beside the ids; None leaves it out.
     """
     how = how or Corruption()
     torch.manual_seed(schedule.seed)
@@ -178,6 +182,8 @@ def train_transformer(
         add_changes(model, rank)
     K, P = config.n_codes, config.n_out
     device = run.torch_device
+    motion_loss = motion_loss or MotionLoss()
+    error_of = error_measure(motion_loss, tokenizer, run)
 
     @lru_cache(maxsize=1)
     def batches(corpus: TokenCorpus) -> Batches:
@@ -199,7 +205,12 @@ def train_transformer(
         share = (1.0 / (n_tokens - n_seen))[:, None].expand(B, L)[motion]
         loss = (entropy.reshape(target.shape).mean(1) * share).sum() / B
         right = (logits[motion].argmax(-1) == target).float().mean()
-        return {"loss": loss, "right": right}
+        if error_of is None:
+            return {"loss": loss, "right": right}
+        if not motion_loss.counts_at(step, schedule.steps):
+            return {"loss": loss, "right": right, "motion": loss.new_full((), math.nan)}
+        error = error_of(logits, ids, motion)
+        return {"loss": loss + motion_loss.weight * error, "right": right, "motion": error}
 
     train(model, loss_fn, schedule, run, "transformer", slower={"word_layers.": words_rate})
     return model

@@ -149,7 +149,7 @@ class TestCommand:
         assert "Table 1 (comparison)" in shown
         assert "Table 3" not in shown
         (tmp_path / "std.npy").write_bytes(b"nothing")
-        assert main([*command, "--evaluator-std", str(tmp_path / "std.npy")]) == 1
+        assert main([*command, "--evaluator-std", str(tmp_path / "std.npy")]) == 2
         assert "std.npy" in capsys.readouterr().err
 
     @pytest.mark.long

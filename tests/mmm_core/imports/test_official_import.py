@@ -184,7 +184,7 @@ class TestImport:
     def test_other_statistics_need_the_option(self, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
         from daemon.cli import main
 
-        assert main([a for a in self.files(tmp_path) if a != "--any-statistics"]) == 1
+        assert main([a for a in self.files(tmp_path) if a != "--any-statistics"]) == 2
         assert "--any-statistics" in capsys.readouterr().err
         assert not (tmp_path / "official.safetensors").exists()
 
@@ -193,7 +193,7 @@ class TestImport:
 
         arguments = self.files(tmp_path)
         arguments[1], arguments[2] = arguments[2], arguments[1]
-        assert main(arguments) == 1
+        assert main(arguments) == 2
         assert "key 'net'" in capsys.readouterr().err
 
     def test_with_clip_the_file_answers_texts(

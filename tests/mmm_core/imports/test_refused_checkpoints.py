@@ -96,7 +96,7 @@ def write(folder: Path, vq: State, trans: State) -> None:
 
 def refused(folder: Path, capsys: pytest.CaptureFixture[str]) -> str:
     """The message of an import that is refused with nothing written."""
-    assert run_import(folder) == 1
+    assert run_import(folder) == 2
     message = capsys.readouterr().err
     assert "internal error" not in message
     assert not (folder / "official.safetensors").exists()
@@ -123,7 +123,7 @@ class TestImport:
     def test_heads_that_do_not_divide_the_width(self, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
         write(tmp_path, golden("vqvae_tiny"), golden("t2m_trans_tiny"))
         for heads in ("0", "7", "-4"):
-            assert run_import(tmp_path, "--heads", heads) == 1
+            assert run_import(tmp_path, "--heads", heads) == 2
             assert "heads" in capsys.readouterr().err
 
     def test_double_precision_is_taken(self, tmp_path: Path) -> None:
@@ -170,13 +170,13 @@ class TestDilationGrowth:
         assert run_import(tmp_path, "--dilation-growth", "2") == 0
         assert self.growth(tmp_path, capsys) == 2
         self.log(tmp_path, 3)
-        assert run_import(tmp_path, "--dilation-growth", "2") == 1
+        assert run_import(tmp_path, "--dilation-growth", "2") == 2
         assert "run.log" in capsys.readouterr().err
 
     @pytest.mark.parametrize("growth", ["0", "-1", "1000000000"])
     def test_one_that_cannot_be(self, tmp_path: Path, capsys: pytest.CaptureFixture[str], growth: str) -> None:
         write(tmp_path, golden("vqvae_tiny"), golden("t2m_trans_tiny"))
-        assert run_import(tmp_path, "--dilation-growth", growth) == 1
+        assert run_import(tmp_path, "--dilation-growth", growth) == 2
         assert "dilation" in capsys.readouterr().err
 
 

@@ -66,10 +66,10 @@ def test_a_recipe_goes_on_from_a_finished_model(
     ):
         other = tmp_path / f"{named}.toml"
         other.write_text(config.read_text().replace(change, instead) if change else config.read_text())
-        assert main(["train", "transformer", "--config", str(other), "--run", str(tmp_path / named), *options]) == 1
+        assert main(["train", "transformer", "--config", str(other), "--run", str(tmp_path / named), *options]) == 2
         assert f"{start}: key '{named}'" in capsys.readouterr().err
     save_model(start, load_model())
-    assert main(["train", "--config", str(config), "--run", str(run)]) == 1
+    assert main(["train", "--config", str(config), "--run", str(run)]) == 2
     assert "which the run began with" in capsys.readouterr().err
     assert main(["train", "tokenizer", "--config", str(config), "--run", str(run)]) == 2
     assert "whose tokenizer stays" in capsys.readouterr().err
@@ -101,7 +101,7 @@ def test_a_recipe_with_a_rank_writes_changes_that_its_start_uses(
     for name, tensor in plain.model.transformer.state_dict().items():
         assert torch.equal(engine.model.transformer.state_dict()[name], tensor), name
     config.write_text(ranked)
-    assert main(["train", "transformer", "--config", str(config), "--run", str(tmp_path / "new")]) == 1
+    assert main(["train", "transformer", "--config", str(config), "--run", str(tmp_path / "new")]) == 2
 
 
 @pytest.mark.long
@@ -140,12 +140,12 @@ def test_the_mean_of_models_that_went_on_from_one_start(
 
     other = tmp_path / "other.safetensors"
     save_model(other, load_model())
-    assert main(["train", "average", "--models", str(out), str(other), "--out", str(tmp_path / "no")]) == 1
+    assert main(["train", "average", "--models", str(out), str(other), "--out", str(tmp_path / "no")]) == 2
     assert f"{other}: key 'transformer'" in capsys.readouterr().err
     elsewhere = ["train", "--config", str(first), "--seed", "6", "--run", str(tmp_path / "elsewhere")]
     assert main([*elsewhere, "--sample-every", "0"]) == 0
     made_elsewhere = tmp_path / "elsewhere" / "model.safetensors"
-    assert main(["train", "average", "--models", str(out), str(made_elsewhere), "--out", str(tmp_path / "no")]) == 1
+    assert main(["train", "average", "--models", str(out), str(made_elsewhere), "--out", str(tmp_path / "no")]) == 2
     assert f"{made_elsewhere}: key 'tokenizer'" in capsys.readouterr().err
     for wrong in (["average"], ["average", "--models", str(out)], ["scope", "--models", str(out)]):
         assert main(["train", *wrong]) == 2
@@ -189,7 +189,7 @@ def test_the_last_layers_of_the_text_encoder_become_the_models_own(
         other = tmp_path / f"{named}.toml"
         rest = recipe.read_text().replace("tuned_layers = 2", f"tuned_layers = {tuned}")
         other.write_text(rest if "tuned_layers" in rest else f"{rest}[text]\ntuned_layers = {tuned}\n")
-        assert main(["train", "transformer", "--config", str(other), "--run", str(tmp_path / named)]) == 1
+        assert main(["train", "transformer", "--config", str(other), "--run", str(tmp_path / named)]) == 2
         assert named in capsys.readouterr().err
 
 

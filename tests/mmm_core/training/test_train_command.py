@@ -57,7 +57,7 @@ def test_a_recipe_makes_clips_while_it_trains(tmp_path: Path, capsys: pytest.Cap
     assert changed == {"decoder"}, "its ids stay what they are"
     tuned = tmp_path / "tuned.toml"
     tuned.write_text(config.read_text() + "[text]\ntuned_layers = 1\n")
-    assert main(["train", "--config", str(tuned), "--run", str(tmp_path / "tuned")]) == 1
+    assert main(["train", "--config", str(tuned), "--run", str(tmp_path / "tuned")]) == 2
     assert "text.tuned_layers" in capsys.readouterr().err
 
 
@@ -155,11 +155,11 @@ def test_the_papers_recipe_has_the_released_sizes() -> None:
 
 @pytest.mark.skipif(torch.cuda.is_available(), reason="there is a GPU here")
 def test_a_missing_gpu_is_said(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["train", "--device", "cuda", "--run", str(tmp_path)]) == 1
+    assert main(["train", "--device", "cuda", "--run", str(tmp_path)]) == 2
     assert "no CUDA device" in capsys.readouterr().err
 
 
 def test_data_without_a_clip_is_said(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     config = small(tmp_path / "small.toml", synthesised=0)
-    assert main(["train", "--config", str(config), "--run", str(tmp_path / "run")]) == 1
+    assert main(["train", "--config", str(config), "--run", str(tmp_path / "run")]) == 2
     assert "no clip" in capsys.readouterr().err
