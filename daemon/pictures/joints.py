@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -87,7 +88,9 @@ def joint_plot(log: Log, robot: RobotModel, path: Path) -> None:
     first = dict(zip(labels, handles, strict=True))
     figure.legend(list(first.values()), list(first), fontsize=8, loc="outside upper right", ncols=3, frameon=False)
     path.parent.mkdir(parents=True, exist_ok=True)
-    figure.savefig(path, dpi=110)
+    with warnings.catch_warnings():  # a sign that the font lacks, as an emoji in a text, is drawn as a box
+        warnings.filterwarnings("ignore", "Glyph .* missing from")
+        figure.savefig(path, dpi=110)
 
 
 def _strip(axis: Any, plans: list[Span]) -> None:

@@ -34,6 +34,7 @@ class Performance:
         person_m: (T, 22, 3) the generated person's joints; None for a run.
         head_faces: (T, 3) unit vectors to where the person's head faces; None for a run.
         captions: (T) text of the command performed in each frame.
+        problem: what is wrong with the log of a run that ends early or is damaged; empty where nothing is.
     """
 
     robot: RobotModel
@@ -43,6 +44,7 @@ class Performance:
     goal_rad: Array | None = None
     person_m: Array | None = None
     head_faces: Array | None = None
+    problem: str = ""
 
     def __len__(self) -> int:
         return len(self.robot_rad)
@@ -99,7 +101,8 @@ def of_run(log: Log, robot: RobotModel, fps: float) -> Performance:
     cycles = [log.cycles[i] for i in last_before]
     measured_rad = JointServoMap(robot).tick_to_rad(np.array([c.present_tick for c in cycles]))
     captions = tuple(log.plan_texts.get(c.plan_id, "") or c.state for c in cycles)
-    return Performance(robot, fps, measured_rad, captions, goal_rad=np.array([c.goal_rad for c in cycles]))
+    goal_rad = np.array([c.goal_rad for c in cycles])
+    return Performance(robot, fps, measured_rad, captions, goal_rad, problem=log.problem)
 
 
 def cut(whole: Performance, start: int, end: int | None = None) -> Performance:

@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Literal
 
 import tyro
+
+if TYPE_CHECKING:
+    from rich.console import Console
 
 _SIZES = {".png": "a contact sheet of eight instants", ".gif": "a film", ".mp4": "a film"}
 
@@ -56,12 +59,15 @@ def render(
     for name, seconds in (("--from-s", from_s), ("--to-s", to_s)):
         if seconds is not None and not math.isfinite(seconds):
             raise CommandError(f"{name} {seconds}; allowed: a number of seconds")
+    if to_s is not None and to_s <= from_s:
+        raise CommandError(f"--from-s {from_s:g} --to-s {to_s:g}; allowed: an end after the beginning")
     performance = read_performance(file, robot, fps=RUN_FPS, from_s=from_s, to_s=to_s)
     if show == "person" and performance.person_m is None:
         raise CommandError(
             f"--show person: {file} is a recorded run, which holds the robot alone; allowed are robot and both"
         )
     console = Console(stderr=True)
+    _warn(console, performance.problem)
     if out.suffix == ".png":
         contact_sheet([performance], show, view).save(out)
     else:
@@ -70,6 +76,11 @@ def render(
         write_film(drawn, out, performance.fps)
     Console(soft_wrap=True).print(f"{out}: {_SIZES[out.suffix]}, {performance.duration_s:.1f} s", highlight=False)
     return 0
+
+
+def _warn(console: Console, problem: str) -> None:
+    if problem:
+        console.print(f"warning: {problem}", style="yellow", highlight=False, soft_wrap=True)
 
 
 def _even(pixels: int) -> bool:
@@ -95,6 +106,7 @@ def plot(file: Annotated[Path, tyro.conf.Positional], out: Path, robot: str | No
 
     check_picture(out, "--out")
     log = read_log(file)
+    _warn(Console(stderr=True), log.problem)
     joint_plot(log, load_robot(robot or log.metadata["robot"]), out)
     Console(soft_wrap=True).print(f"{out}: drawn", highlight=False)
     return 0

@@ -191,7 +191,9 @@ def test_plans_of_a_run_and_their_seams(robot: RobotModel) -> None:
 
 
 def test_the_joint_plot_is_one_panel_a_joint(robot: RobotModel, tmp_path: Path) -> None:
-    joint_plot(run_log(robot, [0] * 5 + [1] * 30), robot, tmp_path / "deep" / "joints.png")
+    log = run_log(robot, [0] * 5 + [1] * 30)
+    log.plan_texts[1] = "wave 👋🏽"  # a sign that the font lacks is no warning, which a test would fail on
+    joint_plot(log, robot, tmp_path / "deep" / "joints.png")
     with Image.open(tmp_path / "deep" / "joints.png") as picture:
         assert picture.width > 1000 and picture.height > 300
 
@@ -202,6 +204,7 @@ def test_the_joint_plot_is_one_panel_a_joint(robot: RobotModel, tmp_path: Path) 
         (["--out", "x.bmp"], 2, "allowed: .png"),
         (["--out", "x.gif", "--width", "17"], 2, "even numbers from 160"),
         (["--out", "x.gif", "--from-s", "99"], 1, "no frame from 99"),
+        (["--out", "x.gif", "--from-s", "3", "--to-s", "1"], 2, "an end after the beginning"),
     ],
 )
 def test_what_cannot_be_rendered_is_said(

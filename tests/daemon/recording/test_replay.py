@@ -209,5 +209,9 @@ def test_the_command_plays_a_cut_off_log_warns_and_says_how_it_went(session, tmp
     assert main(["replay", str(path), "--robot", slow_reference(), "--json"]) == 0
     out, err = capsys.readouterr()
     assert "cut off" in err and json.loads(out)["log_is_cut"]
+    for command in ("plot", "render"):
+        picture = tmp_path / f"{command}.png"
+        assert main([command, str(path), "--robot", slow_reference(), "--out", str(picture)]) == 0
+        assert "warning" in (err := capsys.readouterr().err) and "cut off" in err and picture.is_file()
     assert main(["replay", str(path), "--robot", slow_reference()]) == 0
     assert "same goals" in capsys.readouterr().out
