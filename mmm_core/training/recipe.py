@@ -29,12 +29,14 @@ class DataRecipe:
         folder: a HumanML3D or KIT-ML folder, or one with clips.jsonl (docs/DATA.md); empty for none.
         synthesised: number of clips that the gesture corpus makes before the training.
         licence: licence of the folder's data, which is written into the checkpoint.
+        cuts: cuts of each of the folder's motions: above 1 varied ones are added (`mmm_core.training.cuts`).
         fresh: gesture clips made while the transformer trains; the length predictor then trains on the newest of them.
     """
 
     folder: str = ""
     synthesised: int = 0
     licence: str = ""
+    cuts: int = 1
     fresh: FreshRecipe = field(default_factory=FreshRecipe)
 
     @property

@@ -32,17 +32,9 @@ from mmm_core.model.transformer import MotionTransformer
 from mmm_core.model.vqvae import VqVae
 from mmm_core.motion.features import RestPose
 from mmm_core.motion.motion import FPS, N_FEATURES
-from mmm_core.training.batches import (
-    CORPUS,
-    CaptionStates,
-    Clip,
-    TokenCorpus,
-    cut_to_tokens,
-    encode_clips,
-    load_clips,
-    save_clips,
-)
+from mmm_core.training.batches import CORPUS, CaptionStates, Clip, TokenCorpus, encode_clips, load_clips, save_clips
 from mmm_core.training.caption_training import check_start_and_clips
+from mmm_core.training.cuts import cuts_of
 from mmm_core.training.evaluator_training import train_evaluator
 from mmm_core.training.fresh import WEIGHTS_FILE, FreshClips, make_round, read_weights
 from mmm_core.training.provenance import hours_of, provenance
@@ -81,8 +73,9 @@ class Stages:
         """
         path = self.run.folder / CORPUS
         if not path.is_file() and distributed.rank() == 0:
-            clips = [cut_to_tokens(c, np.random.default_rng((self.recipe.seed, i))) for i, c in enumerate(self._made())]
-            clips = [c for c in clips if len(c.features) and c.captions]
+            n, seed, made = self.recipe.data.cuts, self.recipe.seed, enumerate(self._made())
+            cuts = (cuts_of(c, n if c.is_real else 1, np.random.default_rng((seed, i))) for i, c in made)
+            clips = [c for some in cuts for c in some if len(c.features) and c.captions]
             if not clips:
                 raise TrainingDataError(self.data or Path(), "data", "no clip", "data.folder, data.synthesised or both")
             self.run.folder.mkdir(parents=True, exist_ok=True)

@@ -63,6 +63,10 @@ def retarget(
     settings = Settings(robot, arms_follow, keep_contacts, most_error_deg, fps)
     if not motion.is_dir() and not out.parent.is_dir():
         raise CommandError(f"--out {out}: there is no folder {out.parent}; make it, or name a file in one there is")
+    if motion.is_dir() and (out.is_file() or out.suffix == ".npz"):
+        raise CommandError(
+            f"--out {out}: {motion} is a folder, whose paths go to a folder; name one, such as {out.stem}"
+        )
     if motion.is_dir():
         return _folder(settings, motion, out, jobs or os.cpu_count() or 1, dask, json=json)
     from rich.console import Console

@@ -72,6 +72,14 @@ def test_a_folder_that_is_not_there_is_named(folder: Path, tmp_path: Path, capsy
     assert f"there is no folder {tmp_path / 'none'}; make it" in capsys.readouterr().err
 
 
+def test_a_folders_paths_do_not_go_to_a_file(folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "there").touch()
+    for name in ("ticks.npz", "there"):
+        assert main(["retarget", str(folder), "--out", str(tmp_path / name)]) == 2
+        assert "is a folder, whose paths go to a folder" in capsys.readouterr().err
+    assert not (tmp_path / "ticks.npz").exists()
+
+
 def test_another_robot_needs_another_folder(folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     out = tmp_path / "out"
     assert run(folder, out) == 0
