@@ -86,7 +86,7 @@ def test_a_recipe_with_a_rank_writes_changes_that_its_start_uses(
     ranked = config.read_text().replace("[transformer]\n", "[transformer]\nrank = 2\nguidance = 1.5\n")
     config.write_text(f'start = "{start}"\n{ranked}')
     arguments = ["train", "--config", str(config), "--sample-every", "0", "--out", str(out), "--run"]
-    assert main([*arguments, str(tmp_path / "without")]) == 1 and "no clip of a person" in capsys.readouterr().err
+    assert main([*arguments, str(tmp_path / "without")]) == 2 and "no clip of a person" in capsys.readouterr().err
     data = tmp_path / "data"
     data.mkdir()
     motion = plain.generate("wave", seed=1, seconds=3).motion
