@@ -1,10 +1,11 @@
 """Errors of the motion model.
 
 MmmError
-├── MotionFileError(path, key, found, allowed)   a motion or caption file that cannot be used   (ValueError)
-├── CheckpointError(path, key, found, expected)  weights that do not fit this code              (ValueError)
-├── GenerationError(asked, allowed)              a request outside the model's range            (ValueError)
-├── TrainingDataError(path, key, found, allowed) a training corpus that cannot be read           (ValueError)
+├── WrongFileError(path, key, found, allowed)    a file that cannot be used                      (ValueError)
+│   ├── MotionFileError                          a motion or caption file
+│   ├── CheckpointError                          weights that do not fit this code
+│   └── TrainingDataError                        a recipe or a training corpus
+├── GenerationError(asked, allowed)              a request outside the model's range             (ValueError)
 └── EvaluationError(found, allowed)              things that cannot be measured together         (ValueError)
 """
 
@@ -17,7 +18,7 @@ class MmmError(Exception):
     """Base class of every error that the motion model raises."""
 
 
-class _FileError(MmmError, ValueError):
+class WrongFileError(MmmError, ValueError):
     """A file with a wrong value: keeps path, key, found and allowed, and says all four."""
 
     def __init__(self, path: Path | str, key: str, found: str, allowed: str) -> None:
@@ -26,15 +27,15 @@ class _FileError(MmmError, ValueError):
         super().__init__(f"{where}: {found}; expected {allowed}")
 
 
-class MotionFileError(_FileError):
+class MotionFileError(WrongFileError):
     """A file that cannot be read as a motion."""
 
 
-class CheckpointError(_FileError):
+class CheckpointError(WrongFileError):
     """A checkpoint that is missing, corrupt or made for another model."""
 
 
-class TrainingDataError(_FileError):
+class TrainingDataError(WrongFileError):
     """A training folder that is missing, empty or inconsistent."""
 
 

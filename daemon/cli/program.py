@@ -188,18 +188,10 @@ def _explain(error: Exception) -> int:
     if missing := about_missing(error):
         return _failed(missing, FAILED)
     from daemon.errors import CommandError, ConfigError, DaemonError, LogError
-    from mmm_core.errors import CheckpointError, EvaluationError, MmmError, MotionFileError, TrainingDataError
+    from mmm_core.errors import EvaluationError, MmmError, WrongFileError
     from retarget.errors import MotionError, RetargetError, RobotFileError, UnknownRobotError
 
-    wrong_files = (
-        RobotFileError,
-        MotionFileError,
-        MotionError,
-        LogError,
-        CheckpointError,
-        TrainingDataError,
-        EvaluationError,
-    )
+    wrong_files = (RobotFileError, MotionError, LogError, WrongFileError, EvaluationError)
     bad_use = isinstance(error, (CommandError, ConfigError, UnknownRobotError, *wrong_files)) or _names_no_file(error)
     if isinstance(error, (DaemonError, MmmError, RetargetError)):
         return _failed(str(error), int(getattr(error, "exit_status", BAD_USE if bad_use else FAILED)))

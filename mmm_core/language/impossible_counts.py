@@ -27,23 +27,27 @@ def within_counts(reading: Reading) -> Reading:
 
     `notes` says what was changed, `denied` names what is left out.
     """
-    if not any(_ZERO.search(c.text) or _too_many(c.text) for step in reading.steps for c in step):
-        return reading
     steps, denied, notes = list[tuple[PlainCommand, ...]](), list(reading.denied), list(reading.notes)
     for step in reading.steps:
-        kept: list[PlainCommand] = []
-        for command in step:
-            if zero := _ZERO.search(command.text):
-                denied.append(" ".join((command.text[: zero.start()] + command.text[zero.end() :]).split()))
-                continue
-            if many := _too_many(command.text):
-                said, text = many
-                notes.append(f"'{said}' is more than the most, {MOST}: '{text}'")
-                command = replace(command, text=text, limbs=limbs_of(text))  # noqa: PLW2901
-            kept.append(command)
+        kept = [limited for command in step if (limited := _limited(command, denied, notes)) is not None]
         if kept:
             steps.append(tuple(kept))
+    if tuple(steps) == reading.steps:
+        return reading
     return replace(reading, steps=tuple(steps), denied=tuple(denied), notes=tuple(notes), plain=False)
+
+
+def _limited(command: PlainCommand, denied: list[str], notes: list[str]) -> PlainCommand | None:
+    """A command with thirty times for more, or None for zero times; adds to `denied` or `notes` what was changed."""
+    if zero := _ZERO.search(command.text):
+        denied.append(" ".join((command.text[: zero.start()] + command.text[zero.end() :]).split()))
+        return None
+    many = _too_many(command.text)
+    if many is None:
+        return command
+    said, text = many
+    notes.append(f"'{said}' is more than the most, {MOST}: '{text}'")
+    return replace(command, text=text, limbs=limbs_of(text))
 
 
 def _too_many(command: str) -> tuple[str, str] | None:

@@ -33,16 +33,16 @@ def cuts_of(clip: Clip, n: int, generator: np.random.Generator) -> list[Clip]:
 def at_speed(features: NDArray[np.float32], speed: float) -> NDArray[np.float32]:
     """Features (T, F) of the motion at `speed` times its speed: (about T / speed, F).
 
-    Poses are interpolated linearly; velocities, which are per frame, grow by the factor.
+    Poses are interpolated linearly; velocities, which are per frame, grow by the factor. `motion.performing` changes a tempo by
+    rotations, which needs features of our definition; recordings may have those of HumanML3D or KIT-ML.
     """
     T, F = features.shape
-    n_joints = joints_of(F)
     at = np.arange(0.0, T - 1 + 1e-9, speed)
     before = np.minimum(at.astype(np.int64), T - 2)
     share = (at - before)[:, None]
     out = features[before] * (1 - share) + features[before + 1] * share
-    velocities = [0, 1, 2, *range(4 + 9 * (n_joints - 1), 4 + 9 * (n_joints - 1) + 3 * n_joints)]
-    out[:, velocities] *= speed
+    out[:, :3] *= speed  # of the root
+    out[:, -4 - 3 * joints_of(F) : -4] *= speed  # of the joints; the last four are foot contacts
     return out.astype(np.float32)
 
 

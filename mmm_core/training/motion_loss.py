@@ -64,12 +64,12 @@ class DecodedError:
 
 
 def error_measure(how: MotionLoss, tokenizer: Tokenizer | VqVae, run: Run) -> DecodedError | None:
-    """What measures decoded motions in a run; None if they do not count.
+    """The measure of decoded motions for a run, or None if its recipe leaves this loss out.
 
     Raises:
         TrainingDataError: the tokenizer's layout has no such measure.
     """
-    if not how.weight:
+    if how.weight <= 0:
         return None
     if not isinstance(tokenizer, Tokenizer):
         found = f"{how.weight:g}, with layout '{tokenizer.config.layout}'"

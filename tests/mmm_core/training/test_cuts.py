@@ -40,7 +40,7 @@ def test_cuts_are_the_same_for_the_same_seed_and_differ_from_each_other(features
 
 @pytest.mark.parametrize("speed", [1 / FASTEST, 0.95, 1.0, 1.1, FASTEST])
 def test_a_motion_at_another_speed_has_the_same_poses_sooner_or_later(features: np.ndarray, speed: float) -> None:
-    """Its root goes as far and turns as far, and its joints are where they are in the motion between two frames."""
+    """The root covers the same distance and angle, and at equal places in the motion the joints are in equal positions."""
     moving = features.copy()
     moving[:, 0], moving[:, 2] = 0.004, 0.02  # turns and walks
     faster = at_speed(moving, speed)

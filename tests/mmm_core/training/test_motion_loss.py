@@ -35,7 +35,10 @@ def predictions(ids: Tensor, sure: float = 40.0) -> Tensor:
 
 
 def motion(seed: int = 0) -> tuple[Tensor, Tensor]:
-    """Ids (2, L, 3), of which the second motion ends after ten, and the positions to predict, all but the first three."""
+    """Ids (2, L, 3) of two motions, and which positions are predicted (2, L).
+
+    The second motion has ten tokens; the first three tokens of both are given.
+    """
     ids = torch.randint(K, (2, L, 3), generator=torch.Generator().manual_seed(seed))
     learnt = (torch.arange(L) >= 3).expand(2, L).clone()
     ids[1, 10], ids[1, 11:], learnt[1, 10:] = K, K + 1, False
