@@ -146,6 +146,14 @@ class UnknownGestureError(ClipError):
         super().__init__(f"gesture {name!r}: not among the {known} known ones{like}; `mmmd gesture list` shows all")
 
 
+class GestureNameError(ClipError):
+    """A name that no gesture can have."""
+
+    def __init__(self, name: str) -> None:
+        self.name = name
+        super().__init__(f"gesture name {name!r}; allowed: 1 to 64 of a-z, 0-9 and _, for example 'my_wave'")
+
+
 class GestureExistsError(ClipError):
     """A gesture has that name already."""
 

@@ -47,6 +47,13 @@ class GenerationError(MmmError, ValueError):
         super().__init__(f"{asked}; allowed: {allowed}")
 
 
+class TextRefusedError(GenerationError):
+    """A text that the model cannot do."""
+
+    def __init__(self, text: str, reason: str) -> None:
+        super().__init__(f"the text '{text[:80]}' was given: {reason}", "what this model can do")
+
+
 class EvaluationError(MmmError, ValueError):
     """Motions, texts, model and evaluator that cannot be measured together."""
 

@@ -187,12 +187,14 @@ def _explain(error: Exception) -> int:
 
     if missing := about_missing(error):
         return _failed(missing, FAILED)
-    from daemon.errors import CommandError, ConfigError, DaemonError, LogError
-    from mmm_core.errors import EvaluationError, MmmError, WrongFileError
+    from daemon.errors import CommandError, ConfigError, DaemonError, GestureNameError, LogError
+    from mmm_core.errors import EvaluationError, GenerationError, MmmError, TextRefusedError, WrongFileError
     from retarget.errors import MotionError, RetargetError, RobotFileError, UnknownRobotError
 
     wrong_files = (RobotFileError, MotionError, LogError, WrongFileError, EvaluationError)
-    bad_use = isinstance(error, (CommandError, ConfigError, UnknownRobotError, *wrong_files)) or _names_no_file(error)
+    wrong_values = (CommandError, ConfigError, UnknownRobotError, GestureNameError, GenerationError)
+    bad_use = isinstance(error, (*wrong_values, *wrong_files)) or _names_no_file(error)
+    bad_use = bad_use and not isinstance(error, TextRefusedError)
     if isinstance(error, (DaemonError, MmmError, RetargetError)):
         return _failed(str(error), int(getattr(error, "exit_status", BAD_USE if bad_use else FAILED)))
     if isinstance(error, UnicodeEncodeError):

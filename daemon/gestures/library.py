@@ -8,7 +8,7 @@ import os
 import re
 from pathlib import Path
 
-from daemon.errors import ClipError, GestureExistsError, UnknownGestureError
+from daemon.errors import ClipError, GestureExistsError, GestureNameError, UnknownGestureError
 from daemon.gestures.clips import Clip, load_clips, save_clips
 from daemon.poses.cycles import marks_of
 from daemon.poses.pose_sequence import PoseSequence, at_tempo
@@ -58,10 +58,10 @@ class GestureLibrary:
 
         Raises:
             GestureExistsError: there is one of that name, and `replace` is not given.
-            ClipError: the name is not allowed.
+            GestureNameError: the name is not allowed.
         """
         if not _NAME.fullmatch(name):
-            raise ClipError(f"gesture name {name!r}; allowed: 1 to 64 of a-z, 0-9 and _, for example 'my_wave'")
+            raise GestureNameError(name)
         if not replace and (name in self._shipped or self._path(name).exists()):
             raise GestureExistsError(name, own=self._path(name).exists())
 

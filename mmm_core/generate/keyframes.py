@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import torch
 from torch import Tensor
 
-from mmm_core.errors import GenerationError
+from mmm_core.errors import GenerationError, TextRefusedError
 from mmm_core.generate.editing import TOKEN_S
 from mmm_core.generate.engine import Engine
 from mmm_core.generate.motion_model import check_seed
@@ -78,7 +78,7 @@ def between(engine: Engine, keyframes: Sequence[Keyframe], text: str = "", *, se
             raise GenerationError("no text was given", "a text: this model knows no motion without one")
         states, verdict = transformer.no_text(1), ScopeVerdict("accepted", 1.0, "", "")
     elif verdict.status == "rejected":
-        raise GenerationError(f"the text '{text[:80]}' was given: {verdict.reason}", "what this model can do")
+        raise TextRefusedError(text, verdict.reason)
     if any((row == engine.model.transformer.ids.mask).flatten().tolist()):
         row = fill(engine.model.transformer, states, [row], [seed], engine.settings)[0]
     return engine.motion(row, text, seed, verdict, n_frames)

@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 import torch
 from torch import Tensor
 
-from mmm_core.errors import GenerationError
+from mmm_core.errors import TextRefusedError
 from mmm_core.generate.engine import Engine
 from mmm_core.language.count_words import count_asked
 from mmm_core.model.sampling import fill
@@ -97,11 +97,11 @@ def filled(engine: Engine, row: Tensor, text: str, seed: int, n_frames: int | No
         n_frames: length that the motion is cut to; None keeps all frames of the row.
 
     Raises:
-        GenerationError: the text is rejected.
+        TextRefusedError: the text is rejected.
     """
     states, verdict = engine.understand(text)
     if verdict.status == "rejected":
-        raise GenerationError(f"the text '{text[:80]}' was given: {verdict.reason}", "what this model can do")
+        raise TextRefusedError(text, verdict.reason)
 
     def motion_of(ids: Tensor) -> Motion:
         return engine.motion(ids, text, seed, verdict, n_frames)

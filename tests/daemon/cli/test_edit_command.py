@@ -77,18 +77,18 @@ def test_the_generator_says_what_is_not_reached() -> None:
 
 
 @pytest.mark.parametrize(
-    ("options", "status", "message"),
+    ("options", "message"),
     [
-        (["--part", "tail"], 1, "left_arm, right_arm, rest"),
-        (["--start-s", "2", "--end-s", "1"], 1, "0 <= start < end <= 4.0 s"),
-        (["--part", "rest", "--after-s", "1"], 2, "one or the other"),
-        (["--then", "other.npz"], 2, "--after-s"),
+        (["--part", "tail"], "left_arm, right_arm, rest"),
+        (["--start-s", "2", "--end-s", "1"], "0 <= start < end <= 4.0 s"),
+        (["--part", "rest", "--after-s", "1"], "one or the other"),
+        (["--then", "other.npz"], "--after-s"),
     ],
 )
 def test_what_does_not_fit_is_said(
-    wave: Path, tmp_path: Path, options: list[str], status: int, message: str, capsys: pytest.CaptureFixture[str]
+    wave: Path, tmp_path: Path, options: list[str], message: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    assert main(["edit", str(wave), "bow", *options, "--out", str(tmp_path / "out.npz")]) == status
+    assert main(["edit", str(wave), "bow", *options, "--out", str(tmp_path / "out.npz")]) == 2
     assert message in capsys.readouterr().err
     assert not (tmp_path / "out.npz").exists()
 

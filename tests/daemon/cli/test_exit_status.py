@@ -55,6 +55,20 @@ def test_a_refused_text_takes_no_other_motions_place(tmp_path: Path, capsys: pyt
     assert "--threads 0" in capsys.readouterr().err
 
 
+def test_a_text_that_is_refused_is_no_wrong_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    motion, out = tmp_path / "nod.npz", tmp_path / "out.npz"
+    assert main(["generate", "nod", "--out", str(motion)]) == 0
+    assert main(["edit", str(motion), "do not wave", "--out", str(out)]) == 1
+    assert "what this model can do" in capsys.readouterr().err and not out.exists()
+
+
+def test_a_name_that_no_gesture_can_have_is_a_wrong_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    motion = tmp_path / "nod.npz"
+    assert main(["generate", "nod", "--out", str(motion)]) == 0
+    assert main(["gesture", "add", "My Nod", str(motion)]) == 2
+    assert "a-z, 0-9 and _" in capsys.readouterr().err
+
+
 def test_a_web_address_that_another_process_has_ends_the_start() -> None:
     with socket.create_server(("127.0.0.1", 0)) as other:
         with pytest.raises(EndpointInUseError, match="which another process has"):
