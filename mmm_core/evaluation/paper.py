@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
 import torch
@@ -36,6 +37,8 @@ from mmm_core.evaluation.reader import Motions, Reader
 from mmm_core.generate.editing import part_names
 from mmm_core.generate.engine import Engine
 from mmm_core.model.sampling import fill
+from mmm_core.model.tokenizer import Tokenizer
+from mmm_core.model.vqvae import VqVae
 
 Table = dict[str, dict[str, Interval | float | int]]
 """Lines by name, each with its columns by name."""
@@ -61,12 +64,17 @@ def comparison(
 ) -> Table:
     """Tables 1 and 2; MModality is measured with `each` motions for a text.
 
-    A line of its own gives the FID between two halves of the real motions.
+    A line of its own gives the FID between two halves of the real motions. A model with weights for captions of people has
+    two tokenizers, and a line for each.
     """
+    tokenizers = {"tokenizer": engine.model.tokenizer}
+    if engine.people is not None:
+        tokenizers["tokenizer for people"] = engine.people.tokenizer
+    again = {name: partial(_reconstruct, one) for name, one in tokenizers.items()}
     return {
         "real motion": {**measure_same(reader, pairs, _real, repeats)},
         "real motion, one half against the other": {"FID": fid_between_halves(reader, pairs, repeats)},
-        "tokenizer": {**measure_same(reader, pairs, lambda some, _seed: reconstruct(engine, some), repeats)},
+        **{name: {**measure_same(reader, pairs, make, repeats)} for name, make in again.items()},
         "generated": {
             **measure(reader, pairs, _generate(engine), repeats, progress),
             "MModality": measure_modality(reader, engine, pairs, repeats, each),
@@ -131,6 +139,10 @@ def ablations(
 
 def _real(pairs: Sequence[Pair], _seed: int) -> Motions:
     return [p.features for p in pairs]
+
+
+def _reconstruct(tokenizer: Tokenizer | VqVae, pairs: Sequence[Pair], _seed: int) -> Motions:
+    return reconstruct(tokenizer, pairs)
 
 
 def _generate(engine: Engine) -> Make:

@@ -22,7 +22,9 @@ from mmm_core.evaluation.reader import Motions, Reader
 from mmm_core.generate.engine import Engine
 from mmm_core.model.sampling import empty_row
 from mmm_core.model.text import TextStates
+from mmm_core.model.tokenizer import Tokenizer
 from mmm_core.model.tokens import FRAMES_PER_TOKEN
+from mmm_core.model.vqvae import VqVae
 
 GENERATE_BATCH = 16
 N_MODALITY_TEXTS, N_MODALITY = 100, 30
@@ -46,13 +48,13 @@ def seeds_of(pairs: Sequence[Pair], first: int, seed: int) -> list[int]:
 
 @torch.inference_mode()
 def generate(engine: Engine, pairs: Sequence[Pair], seed: int) -> Motions:
-    """A motion for each caption, as long as the real motion."""
+    """A motion for each caption, as long as the real motion, by the weights for its words."""
     made: Motions = []
     for i in range(0, len(pairs), GENERATE_BATCH):
         some = pairs[i : i + GENERATE_BATCH]
         rows = [empty_row(engine.model.transformer, len(p.features) // FRAMES_PER_TOKEN) for p in some]
         states, seeds = text_states(engine, some), seeds_of(some, i, seed)
-        made += decode(engine, engine.fill([p.text for p in some], states, rows, seeds))
+        made += engine.filled_features([p.text for p in some], states, rows, seeds)
     return made
 
 
@@ -63,10 +65,10 @@ def decode(engine: Engine, rows: Sequence[torch.Tensor]) -> Motions:
 
 
 @torch.inference_mode()
-def reconstruct(engine: Engine, pairs: Sequence[Pair]) -> Motions:
+def reconstruct(tokenizer: Tokenizer | VqVae, pairs: Sequence[Pair]) -> Motions:
     """The real motions, encoded and decoded."""
-    tokenizer = engine.model.tokenizer
-    return decode(engine, [tokenizer.encode(torch.from_numpy(p.features)[None])[0] for p in pairs])
+    motions = (torch.from_numpy(p.features)[None] for p in pairs)
+    return [tokenizer.decode(tokenizer.encode(motion))[0].numpy() for motion in motions]
 
 
 def one_caption_each(pairs: Sequence[Pair], generator: np.random.Generator) -> list[int]:

@@ -67,7 +67,10 @@ def load_reader(
 def real_figures(
     reader: Reader, engine: Engine, pairs: Sequence[Pair], repeats: int, each: int, progress: Progress
 ) -> dict[str, Any]:
-    """Figures on real captions: generated motion against real and reconstructed motion, with two ratios as a summary."""
+    """Figures on real captions: generated motion against real and reconstructed motion, with ratios as a summary.
+
+    `fid_ratio` is to the FID of the checkpoint's own tokenizer, `fid_ratio_people` to that of the tokenizer for people.
+    """
     table = paper.comparison(reader, engine, pairs, repeats, progress, each)
     lines = {name: {key: number(v) for key, v in row.items()} for name, row in table.items()}
     made, real, again = lines["generated"], lines["real motion"], lines["tokenizer"]
@@ -78,6 +81,7 @@ def real_figures(
     return {
         "r1_ratio": _ratio(made.get("R1"), real.get("R1")),
         "fid_ratio": _ratio(made["FID"], again["FID"]),
+        "fid_ratio_people": _ratio(made["FID"], lines.get("tokenizer for people", again)["FID"]),
         "r_precision": {n: [row["R1"], row["R2"], row["R3"]] for n, row in lines.items() if "R1" in row},
         "fid": column("FID"),
         "mm_dist": column("MM-Dist"),

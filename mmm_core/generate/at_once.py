@@ -19,7 +19,9 @@ from torch import Tensor
 
 from mmm_core.generate.interpretation import ReadCommand
 from mmm_core.generate.motion_model import MotionModel
+from mmm_core.model.tokenizer import Tokenizer
 from mmm_core.model.tokens import FRAMES_PER_TOKEN
+from mmm_core.model.vqvae import VqVae
 from mmm_core.motion.body_parts import BodyPart, put_together
 from mmm_core.motion.features import mirror
 from mmm_core.motion.performing import motion_of
@@ -100,18 +102,18 @@ def arms_of(engine: MotionModel, commands: Sequence[ReadCommand], rows: Sequence
     return found
 
 
-def features_of(engine: MotionModel, ids: Tensor, steps: Sequence[tuple[int, StepIds]]) -> NDArray[np.float32]:
+def features_of(tokenizer: Tokenizer | VqVae, ids: Tensor, steps: Sequence[tuple[int, StepIds]]) -> NDArray[np.float32]:
     """(T, 263) features of ids (L, C); body parts of commands done at once are decoded from each command's own ids.
 
     Args:
-        engine: the model.
+        tokenizer: decodes the ids.
         ids: of the whole motion, which contains every step.
         steps: the steps, each with the token at which it begins.
     """
     several = [(first, step) for first, step in steps if step.rows]
     if len(several) == len(steps) == 1 and len(ids) == len(several[0][1].ids):  # every joint has an owner
         step = several[0][1]
-        own = engine.model.tokenizer.decode(torch.stack(step.rows)).numpy()
+        own = tokenizer.decode(torch.stack(step.rows)).numpy()
         whole = own[step.owners["trunk"]]
         return put_together(whole, {part: own[k] for part, k in step.owners.items()}, 0, len(whole))
     rows = [ids]
@@ -120,7 +122,7 @@ def features_of(engine: MotionModel, ids: Tensor, steps: Sequence[tuple[int, Ste
         for first, step in several:
             alone[first : first + len(step.ids)] = step.rows[min(k, len(step.rows) - 1)]
         rows.append(alone)
-    whole, *own = engine.model.tokenizer.decode(torch.stack(rows)).numpy()
+    whole, *own = tokenizer.decode(torch.stack(rows)).numpy()
     for first, step in several:
         start, end = first * FRAMES_PER_TOKEN, (first + len(step.ids)) * FRAMES_PER_TOKEN
         whole = put_together(whole, {part: own[k] for part, k in step.owners.items()}, start, end)

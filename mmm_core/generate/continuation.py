@@ -71,7 +71,7 @@ def continue_motion(
         timer.lap("decode")
         n_before, stretches = len(ids_before), stretches_of(steps, [len(step.ids) for step in made])
         begins = [n_before + s.end // FRAMES_PER_TOKEN - len(m.ids) for s, m in zip(stretches, made, strict=True)]
-        whole = features_of(engine, torch.cat([ids_before, ids]), list(zip(begins, made, strict=True)))
+        whole = features_of(engine.model.tokenizer, torch.cat([ids_before, ids]), list(zip(begins, made, strict=True)))
         features = whole[n_before * FRAMES_PER_TOKEN :]
         if any(not s.plain for s in stretches):
             features = performed(features, stretches)[0]

@@ -103,7 +103,7 @@ class Engine(MotionModel):
         if model.is_ours and model.scope is not None and isinstance(encoder, MiniLm):
             reader = SentenceReader.load(encoder, words)
         checkpoint_hash = file_hash(path)
-        people = load_people(model.transformer, path, checkpoint_hash)
+        people = load_people(model.transformer, model.tokenizer, path, checkpoint_hash)
         if people is not None:
             pack(people.transformer, words)
         engine = cls(model, encoder, checkpoint_hash, settings or plain, chosen, reader, people)

@@ -30,6 +30,8 @@ from mmm_core.generate.sequence import (
     stretches_of,
 )
 from mmm_core.generate.transitions import TRANSITION_TOKENS
+from mmm_core.inference.checkpoint import Model
+from mmm_core.inference.people_weights import PeopleWeights
 from mmm_core.language.mirroring import mirror_words
 from mmm_core.model.sampling import FirstStep, SamplingSettings, empty_row, pseudo_log_likelihood
 from mmm_core.model.tokens import FRAMES_PER_TOKEN, tokens_for_frames
@@ -63,6 +65,7 @@ class MotionGeneration:
             if n_frames is None and engine.model.is_ours:
                 steps, self._repetitions = with_few_strokes(engine, steps)
             self._steps = steps_of(engine, steps, n_frames) if steps else []
+        self._people = self._weights_of_the_whole()
         self._verdict, self._mirrored = self._read.verdict, self._read.is_mirrored
         self._first_steps = [FirstStep() for _ in self._steps[0].commands] if self._steps else []
         self._candidates = candidates
@@ -72,6 +75,16 @@ class MotionGeneration:
         if len(self._steps) == 1 and n_frames is None:
             self.n_frames = round(self.n_frames / self._steps[0].manner.tempo)
         self._timer.lap("text")
+
+    def _weights_of_the_whole(self) -> PeopleWeights | None:
+        """The weights for captions of people if the text is one command that they are for; its ids are those of their tokenizer.
+
+        Commands beside others have ids of the model's own tokenizer (`MotionModel.fill`), so that they can be joined.
+        """
+        if len(self._steps) != 1 or len(self._steps[0].commands) != 1:
+            return None
+        command = self._steps[0].commands[0]
+        return None if command.is_mirrored else self._engine.weights_for(command.text, command.states.sentence[0])
 
     @property
     def settings(self) -> SamplingSettings:
@@ -107,6 +120,11 @@ class MotionGeneration:
             ids = joined(self._engine, self._steps, [step.ids for step in made], self._seed)
             self._timer.lap("decode")
             return self._result_of(ids, made, self._asked_frames, "motion")
+
+    @property
+    def _weights(self) -> Model | PeopleWeights:
+        """The transformer that fills the rows, and the tokenizer of their ids."""
+        return self._people or self._engine.model
 
     @property
     def _opens(self) -> bool:
@@ -165,7 +183,7 @@ class MotionGeneration:
         repetition = self._repetitions[i]
         if repetition is None:
             return ids
-        many = repeated(self._engine, command, ids, repetition, settings.opening)
+        many = repeated(self._engine, self._weights.tokenizer, command, ids, repetition, settings.opening)
         return self._as_said(i, seeds[0]) if many is None else many
 
     def _as_said(self, i: int, seed: int) -> Tensor:
@@ -181,9 +199,7 @@ class MotionGeneration:
         return (self._seed + i * COMMAND_STRIDE + k * TOGETHER_STRIDE) % 2**31
 
     def _likeliest(self, command: ReadCommand, candidates: Sequence[Tensor]) -> Tensor:
-        people = self._engine.weights_for(command.text, command.states.sentence[0])
-        transformer = self._engine.model.transformer if people is None else people.transformer
-        likely = pseudo_log_likelihood(transformer, command.states.repeated(len(candidates)), candidates)
+        likely = pseudo_log_likelihood(self._weights.transformer, command.states.repeated(len(candidates)), candidates)
         return candidates[int(likely.argmax())]
 
     def _fill(
@@ -191,6 +207,8 @@ class MotionGeneration:
         first: FirstStep | None = None,
     ) -> list[Tensor]:  # fmt: skip
         states = command.states if len(rows) == 1 else command.states.repeated(len(rows))
+        if self._people is not None:
+            return self._engine.fill_with(self._people, states, rows, seeds, settings, first)
         return self._engine.fill([command.text] * len(rows), states, rows, seeds, settings, first)
 
     def _result_of(self, ids: Tensor, made: Sequence[StepIds], n_frames: int | None, lap: str) -> GenerationResult:
@@ -199,14 +217,16 @@ class MotionGeneration:
         ends = [stretch.end for stretch in stretches]
         if any(not s.plain for s in stretches) or any(step.rows for step in made):
             begins = [end // FRAMES_PER_TOKEN - len(step.ids) for end, step in zip(ends, made, strict=True)]
-            features = features_of(self._engine, ids, list(zip(begins, made, strict=True)))
+            features = features_of(self._weights.tokenizer, ids, list(zip(begins, made, strict=True)))
             if any(not s.plain for s in stretches):
                 words = self._words_of_steps[: len(made)]
                 kept = with_kept_sizes(features, stretches, words, widens=n_frames is None)
                 features, ends = performed(features, kept)
             motion = self._engine.motion_of(features, self._text, self._seed, verdict, n_frames, is_mirrored=mirrored)
         else:
-            motion = self._engine.motion(ids, self._text, self._seed, verdict, n_frames, is_mirrored=mirrored)
+            motion = self._engine.motion(
+                ids, self._text, self._seed, verdict, n_frames, is_mirrored=mirrored, people=self._people
+            )
         self._timer.lap(lap)
         understood = understood_as(verdict)
         if len(self._steps) > 1 or len(self._steps[0].commands) > 1:

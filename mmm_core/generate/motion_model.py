@@ -8,6 +8,7 @@ from itertools import islice
 
 import numpy as np
 import torch
+from numpy.typing import NDArray
 from torch import Tensor
 
 from mmm_core.errors import GenerationError
@@ -133,7 +134,9 @@ class MotionModel:
         settings: SamplingSettings | None = None,
         first: FirstStep | None = None,
     ) -> list[Tensor]:
-        """Fill the [MASK]s of `rows`, each with the weights for its words (`weights_for`).
+        """Fill the [MASK]s of `rows`, each with the weights for its words; the ids are those of the model's own tokenizer.
+
+        A row that holds ids already is filled with the model's own weights.
 
         Args:
             words: B commands or captions.
@@ -143,16 +146,46 @@ class MotionModel:
             settings: how tokens are sampled; the model's own when None.
             first: as in `mmm_core.model.sampling.fill`.
         """
-        how, made = settings or self.settings, dict[int, Tensor]()
-        weights = [self.weights_for(*one) for one in zip(words, states.sentence, strict=True)]
+        made = self._filled(words, states, rows, seeds, settings, first)
+        return [ids if people is None else self._own_ids(people, ids) for people, ids in made]
+
+    def filled_features(
+        self, words: Sequence[str], states: TextStates, rows: Sequence[Tensor], seeds: Sequence[int]
+    ) -> list[NDArray[np.float32]]:
+        """Features (T, F) of `rows` filled as by `fill`, each decoded by itself, since padding would change a motion's end."""
+        made = self._filled(words, states, rows, seeds)
+        return [(people or self.model).tokenizer.decode(ids[None])[0].numpy() for people, ids in made]
+
+    def fill_with(
+        self, people: PeopleWeights | None, states: TextStates, rows: Sequence[Tensor], seeds: Sequence[int],
+        settings: SamplingSettings | None = None, first: FirstStep | None = None,
+    ) -> list[Tensor]:  # fmt: skip
+        """Fill the [MASK]s of `rows` with the weights for captions of people, in ids of their tokenizer; with None as usual."""
+        how = settings or self.settings
+        if people is None:
+            return fill(self.model.transformer, states, rows, seeds, how, first=first)
+        return fill(people.transformer, states, rows, seeds, replace(how, guidance=people.guidance), first=first)
+
+    def _filled(
+        self, words: Sequence[str], states: TextStates, rows: Sequence[Tensor], seeds: Sequence[int],
+        settings: SamplingSettings | None = None, first: FirstStep | None = None,
+    ) -> list[tuple[PeopleWeights | None, Tensor]]:  # fmt: skip
+        """For each row the weights that filled it, and its ids, which are those of their tokenizer."""
+        made, mask = dict[int, Tensor](), self.model.transformer.ids.mask
+        weights = [
+            self.weights_for(one, sentence) if bool((row == mask).all()) else None
+            for one, sentence, row in zip(words, states.sentence, rows, strict=True)
+        ]
         for people in set(weights):
             mine = [i for i, one in enumerate(weights) if one is people]
-            transformer = self.model.transformer if people is None else people.transformer
-            guided = how if people is None else replace(how, guidance=people.guidance)
             theirs = states if len(mine) == len(words) else TextStates.stacked([states.row(i) for i in mine])
-            filled = fill(transformer, theirs, [rows[i] for i in mine], [seeds[i] for i in mine], guided, first=first)
+            filled = self.fill_with(people, theirs, [rows[i] for i in mine], [seeds[i] for i in mine], settings, first)
             made |= dict(zip(mine, filled, strict=True))
-        return [made[i] for i in range(len(words))]
+        return [(weights[i], made[i]) for i in range(len(words))]
+
+    def _own_ids(self, people: PeopleWeights, ids: Tensor) -> Tensor:
+        """(L, C) ids, in the model's own tokenizer, of the motion that the tokenizer for people decodes from `ids`."""
+        return self.model.tokenizer.encode(people.tokenizer.decode(ids[None]))[0]
 
     def weights_for(self, words: str, sentence: Tensor) -> PeopleWeights | None:
         """The weights for words with their sentence vector (D,); None: the model's own, for all but captions of people."""
@@ -167,12 +200,17 @@ class MotionModel:
         n_frames: int | None = None,
         *,
         is_mirrored: bool = False,
+        people: PeopleWeights | None = None,
     ) -> Motion:
-        """The motion of a row of ids (L, C), cut to `n_frames`. A mirrored motion carries the ids of its mirrored features."""
+        """The motion of a row of ids (L, C), cut to `n_frames`; the ids are those of `people`'s tokenizer where it is given.
+
+        A mirrored motion, and one of `people`, carries the ids that encode its features in the model's own tokenizer.
+        """
         with torch.inference_mode():
-            whole = self.model.tokenizer.decode(ids[None])[0]
+            whole = (people or self.model).tokenizer.decode(ids[None])[0]
             if is_mirrored:
                 whole = torch.from_numpy(mirror(whole.numpy()))
+            if is_mirrored or people is not None:
                 ids = self.model.tokenizer.encode(whole[None])[0]
             features = whole[:n_frames].numpy()
         return self.motion_of_features(features, ids, text, seed, verdict)

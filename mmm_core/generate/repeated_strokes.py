@@ -23,7 +23,9 @@ from mmm_core.generate.motion_model import MotionModel
 from mmm_core.language.count_words import count_asked, with_count
 from mmm_core.language.mirroring import mirror_words
 from mmm_core.language.whole_gestures import once
+from mmm_core.model.tokenizer import Tokenizer
 from mmm_core.model.tokens import FRAMES_PER_TOKEN
+from mmm_core.model.vqvae import VqVae
 
 PERFORMED = 2
 """Strokes that the model makes itself."""
@@ -81,12 +83,18 @@ def expected_tokens(n_tokens: int, repetition: Repetition | None) -> int:
 
 
 def repeated(
-    engine: MotionModel, command: ReadCommand, ids: Tensor, repetition: Repetition, opening: int
+    engine: MotionModel,
+    tokenizer: Tokenizer | VqVae,
+    command: ReadCommand,
+    ids: Tensor,
+    repetition: Repetition,
+    opening: int,
 ) -> Tensor | None:
     """(L', C) ids of all strokes, from ids (L, C) of two; None where no part of them returns to its beginning.
 
     Args:
-        engine: predicts lengths, and decodes the motion that is compared with itself.
+        engine: predicts lengths.
+        tokenizer: decodes the motion that is compared with itself.
         command: the command, whose words name the number.
         ids: its two strokes, or the whole gesture.
         repetition: what is wanted.
@@ -95,7 +103,7 @@ def repeated(
     if repetition.of_whole:
         return torch.cat([ids] * repetition.times)
     count = repetition.times
-    features = engine.model.tokenizer.decode(ids[None])[0].reshape(len(ids), -1)
+    features = tokenizer.decode(ids[None])[0].reshape(len(ids), -1)
     best, found = _FARTHEST, None
     for period in periods(engine, command):
         for strokes, dearness in ((1, 1.0), (2, _IN_TURN)):

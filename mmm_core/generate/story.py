@@ -226,7 +226,7 @@ def _ids(engine: Engine, steps: list[Step], made: Iterator[Tensor], seed: int) -
         if all(s.plain for s in stretches) and not any(step.rows for step in whole):
             return ids
         begins = [s.end // FRAMES_PER_TOKEN - len(step.ids) for s, step in zip(stretches, whole, strict=True)]
-        features = features_of(engine, ids, list(zip(begins, whole, strict=True)))
+        features = features_of(engine.model.tokenizer, ids, list(zip(begins, whole, strict=True)))
         if any(not s.plain for s in stretches):
             features, _ = performed(features, stretches)
         n_frames = len(features) // FRAMES_PER_TOKEN * FRAMES_PER_TOKEN

@@ -1,7 +1,8 @@
-"""The transformer's weights for captions of people: a low-rank change of the shipped model's weights, in a file of its own.
+"""The weights for captions of people: low-rank changes of the model's transformer and tokenizer, in a file of their own.
 
 The weights of the checkpoint MODEL.safetensors are in MODEL_people.safetensors beside it, which names that checkpoint's hash.
-`mmmd train` makes it from a recipe with a rank (docs/training.md).
+`mmmd train` makes it from a recipe with a rank (docs/training.md). The codebooks are the checkpoint's, but the ids of people's
+motions are those of the changed tokenizer: only this one decodes what the changed transformer writes.
 """
 
 from __future__ import annotations
@@ -18,25 +19,29 @@ from mmm_core.errors import CheckpointError
 from mmm_core.inference.checkpoint import file_hash, fill_module, load_tensors, save_tensors
 from mmm_core.language.captions import may_be_of_people
 from mmm_core.model.low_rank import apply_changes, changes_of
+from mmm_core.model.tokenizer import Tokenizer
 from mmm_core.model.transformer import MotionTransformer
+from mmm_core.model.vqvae import VqVae
 
 _KIND = "mmmd-people"
-_CAPTIONS = "captions."
+_CAPTIONS, _TOKENIZER = "captions.", "tokenizer."
 SURE_LOGIT = 1.0
 """Log-odds from which a text is a caption of people; of 3,000 sentences of the corpus about a person 23 have so much."""
 
 
 @dataclass(frozen=True)
 class PeopleWeights:
-    """A transformer for captions of people, and what tells these from descriptions of gestures.
+    """Transformer and tokenizer for captions of people, and what tells these from descriptions of gestures.
 
     Attributes:
         transformer: the checkpoint's transformer with other weights.
+        tokenizer: the checkpoint's tokenizer with other encoders and another decoder, and the same codebooks.
         captions: a sentence vector (D,) -> log-odds (1,) that the sentence is a caption of people.
         guidance: weight of the text in sampling, as in `SamplingSettings`.
     """
 
     transformer: MotionTransformer
+    tokenizer: Tokenizer | VqVae
     captions: nn.Linear
     guidance: float
 
@@ -52,28 +57,39 @@ def people_file(checkpoint: Path) -> Path:
 
 
 def save_people(
-    path: Path, trained: nn.Module, captions: nn.Linear, start: Path, guidance: float, provenance: dict[str, Any]
+    path: Path,
+    trained: nn.Module,
+    tokenizer: nn.Module,
+    captions: nn.Linear,
+    start: Path,
+    guidance: float,
+    provenance: dict[str, Any],
 ) -> None:
-    """Write the changes of a trained transformer, in half precision; an older file stays whole if writing fails.
+    """Write the changes of a trained transformer and tokenizer, in half precision; an older file stays whole if writing fails.
 
     Args:
         path: where to.
         trained: a transformer with changes (`mmm_core.model.low_rank.add_changes`).
+        tokenizer: a tokenizer with changes; without any, the checkpoint's own is used.
         captions: as `PeopleWeights.captions`.
-        start: the checkpoint whose transformer was changed.
+        start: the checkpoint that was changed.
         guidance: as `PeopleWeights.guidance`.
         provenance: origin of the weights.
     """
     tensors = {name: factor.half() for name, factor in changes_of(trained).items()}
+    tensors |= {_TOKENIZER + name: factor.half() for name, factor in changes_of(tokenizer).items()}
     tensors |= {_CAPTIONS + name: tensor for name, tensor in captions.state_dict().items()}
     save_tensors(path, tensors, _KIND, {"start": file_hash(start), "guidance": guidance, "provenance": provenance})
 
 
-def load_people(transformer: MotionTransformer, checkpoint: Path, checkpoint_hash: str) -> PeopleWeights | None:
+def load_people(
+    transformer: MotionTransformer, tokenizer: Tokenizer | VqVae, checkpoint: Path, checkpoint_hash: str
+) -> PeopleWeights | None:
     """The weights for captions of people that belong to a checkpoint; None where it has none.
 
     Args:
         transformer: the checkpoint's transformer, which is copied; its layers must not be packed yet.
+        tokenizer: the checkpoint's tokenizer, which is copied.
         checkpoint: the checkpoint's file.
         checkpoint_hash: its hash.
 
@@ -89,12 +105,18 @@ def load_people(transformer: MotionTransformer, checkpoint: Path, checkpoint_has
         raise CheckpointError(
             path, "start", found, f"those of {checkpoint.name}, {checkpoint_hash[:12]}, or no such file"
         )
-    changed, captions = deepcopy(transformer), nn.Linear(transformer.config.text_dim, 1)
-    names = [name for name in tensors if name.startswith(_CAPTIONS)]
-    fill_module(captions, {name.removeprefix(_CAPTIONS): tensors.pop(name) for name in names}, path)
+    changed, decoding, captions = deepcopy(transformer), deepcopy(tokenizer), nn.Linear(transformer.config.text_dim, 1)
+    fill_module(captions, _taken(tensors, _CAPTIONS), path)
     try:
+        apply_changes(decoding, _taken(tensors, _TOKENIZER))
         apply_changes(changed, tensors)
     except (AttributeError, KeyError, RuntimeError) as error:
         first = str(error).split("\n", 1)[0]
         raise CheckpointError(path, "", f"a change that does not fit ({first})", "what `mmmd train` writes") from error
-    return PeopleWeights(changed, captions, metadata["guidance"])
+    return PeopleWeights(changed, decoding, captions, metadata["guidance"])
+
+
+def _taken(tensors: dict[str, Tensor], prefix: str) -> dict[str, Tensor]:
+    """The tensors whose names begin with `prefix`, by the rest of their names; they are taken out of `tensors`."""
+    names = [name for name in tensors if name.startswith(prefix)]
+    return {name.removeprefix(prefix): tensors.pop(name) for name in names}

@@ -22,6 +22,7 @@ from mmm_core.inference.checkpoint import Model
 from mmm_core.language.known_phrases import SUBJECT_BEFORE_VERB
 from mmm_core.model.text import TextEncoder
 from mmm_core.training.batches import Clip, captions_of_people
+from mmm_core.training.recipe import Recipe
 from mmm_core.training.scope_training import sentence_vectors
 
 N_SENTENCES = 6000
@@ -44,8 +45,18 @@ def train_captions(captions: list[str], encoder: TextEncoder) -> nn.Linear:
     return _regression(theirs, ours)
 
 
-def check_start_and_clips(start: Model | None, clips: Sequence[Clip], folder: Path) -> None:
-    """Raises TrainingDataError if a recipe with a rank has no start, or no clip of a person, in the run of `folder`."""
+def check_changes(recipe: Recipe, start: Model | None, clips: Sequence[Clip], folder: Path) -> None:
+    """Raises TrainingDataError if a recipe with a rank has nothing to change, or no clip of a person, in the run of `folder`."""
+    if recipe.tokenizer.rank and not recipe.transformer.rank:
+        allowed = "0, or transformer.rank above 0 as well: only such a transformer learns the changed ids"
+        raise TrainingDataError(folder, "tokenizer.rank", f"{recipe.tokenizer.rank} without transformer.rank", allowed)
+    if recipe.tokenizer.rank and recipe.tokenizer.layout != "parts":
+        raise TrainingDataError(
+            folder,
+            "tokenizer.rank",
+            f"{recipe.tokenizer.rank} with layout '{recipe.tokenizer.layout}'",
+            "layout 'parts'",
+        )
     if start is None:
         raise TrainingDataError(folder, "transformer.rank", "no start", "0, or a start whose weights are changed")
     if not captions_of_people(clips):

@@ -79,10 +79,12 @@ class TokenizerRecipe:
         reset_rule: rule for dead codes; "official" never resets a code that was used once.
         plain_steps: number of the schedule's first steps that do not quantise (layout "parts").
         schedule: steps and learning rate.
-        decoder: further training of the decoder alone; 0 steps for none (layout "parts").
+        decoder: further training of the decoder alone, or of its changes; 0 steps for none (layout "parts").
         gate: whether training stops if the tokenizer loses too much of the corpus's motions (layout "parts"; `mmmd eval
             tokenizer`).
         tune_start: whether the decoder of a start model is also trained further; this does not change its ids.
+        rank: rank of changes of the start's tokenizer that are trained on people's clips by `schedule`, with its codebooks as
+            they are; the transformer learns the changed tokenizer's ids. 0: none.
     """
 
     layout: Literal["parts", "whole", "halves"] = "parts"
@@ -98,6 +100,7 @@ class TokenizerRecipe:
     decoder: Schedule = field(default_factory=lambda: Schedule(steps=2500, learning_rate=1e-3))
     gate: bool = False
     tune_start: bool = False
+    rank: int = 0
 
     def config(self, n_features: int) -> TokenizerConfig | VqVaeConfig:
         """Sizes for `n_features` features."""

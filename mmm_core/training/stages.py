@@ -33,7 +33,7 @@ from mmm_core.model.vqvae import VqVae
 from mmm_core.motion.features import RestPose
 from mmm_core.motion.motion import FPS, N_FEATURES
 from mmm_core.training.batches import CORPUS, CaptionStates, Clip, TokenCorpus, encode_clips, load_clips, save_clips
-from mmm_core.training.caption_training import check_start_and_clips
+from mmm_core.training.caption_training import check_changes
 from mmm_core.training.cuts import cuts_of
 from mmm_core.training.evaluator_training import train_evaluator
 from mmm_core.training.fresh import WEIGHTS_FILE, FreshClips, make_round, read_weights
@@ -44,7 +44,7 @@ from mmm_core.training.run import Run
 from mmm_core.training.samples import SAMPLE_TEXTS, draw_reconstruction, draw_samples
 from mmm_core.training.scope_training import build_scope, own_captions
 from mmm_core.training.start import read_start, start_path
-from mmm_core.training.tokenizer_training import train_tokenizer, tune_decoder
+from mmm_core.training.tokenizer_training import change_for_people, train_tokenizer, tune_decoder
 from mmm_core.training.transformer_training import train_length, train_transformer
 
 log = logging.getLogger(__name__)
@@ -135,14 +135,20 @@ class Stages:
 
     @cached_property
     def tokenizer(self) -> Tokenizer | VqVae:
-        """The trained tokenizer, before any further training of its decoder."""
+        """The trained tokenizer, before any further training of its decoder; with changes if the recipe has a rank for it."""
         start = self.start  # read first, so that a start that does not fit is refused before hours of work
         how, clips = self.recipe.tokenizer, self.clips
+        if how.rank:
+            check_changes(self.recipe, start, clips, self.run.folder)
         width = clips[0].features.shape[1]
         if start is not None:
             if len(start.tokenizer.mean) != width:
                 found = f"a tokenizer of {len(start.tokenizer.mean)} features"
                 raise CheckpointError(start_path(self.recipe), "tokenizer", found, f"{width}, as the data have")
+            if how.rank and isinstance(start.tokenizer, Tokenizer):
+                change_for_people(
+                    start.tokenizer, clips, how.rank, how.schedule, self.run, how.batch, how.window_frames
+                )
             return start.tokenizer
         shown = torch.from_numpy(max(clips, key=lambda c: len(c.features)).features)
 
@@ -234,7 +240,7 @@ class Stages:
         """
         how, tokenizer = self.recipe.transformer, self.tokenizer
         if how.rank:
-            check_start_and_clips(self.start, self.clips, self.run.folder)
+            check_changes(self.recipe, self.start, self.clips, self.run.folder)
         tuned = self.recipe.text.tuned_layers
         config = how.config(tokenizer.config, tokenizer.n_codebooks, self.corpus.captions.words.shape[1], tuned)
         texts = self.text.encode(list(SAMPLE_TEXTS))

@@ -18,6 +18,7 @@ from torch import Tensor
 
 from mmm_core import distributed
 from mmm_core.errors import TrainingDataError
+from mmm_core.model.low_rank import add_changes
 from mmm_core.model.tokenizer import Tokenizer, TokenizerConfig, feature_std, rotation_channels
 from mmm_core.model.vqvae import HEIGHT_CHANNELS, ROOT_HEIGHT, VqVae, VqVaeConfig
 from mmm_core.motion.features import joints_of
@@ -33,6 +34,8 @@ BETA = 0.3
 """Normalised error at which SmoothL1 turns linear; with 1, channels of small motion were lost."""
 DIFFERENCE_GAIN, DIFFERENCE_WEIGHT = 5.0, 0.3
 DECODER_DIFFERENCE_WEIGHT = 0.6
+JERK_GAIN, JERK_WEIGHT = 10.0, 0.3
+"""Of the second and third differences between frames, in the loss of the decoder for people's motion."""
 
 
 def channel_weights() -> Tensor:
@@ -46,6 +49,14 @@ def channel_weights() -> Tensor:
     )
     weight[list(rotation_channels((1, 2, 4, 5, 7, 8, 10, 11)))] = 0.3  # legs: the robot has none
     weight[193:] = 0.1
+    return weight / weight.mean()
+
+
+def even_weights() -> Tensor:
+    """(263,) weight of each feature in the loss for people's motion, mean 1: all but foot contacts count nearly alike."""
+    weight = torch.ones(263)
+    weight[67:193] = 1.5  # rotations, from which joints are recovered
+    weight[259:] = 0.1
     return weight / weight.mean()
 
 
@@ -143,6 +154,66 @@ def tune_decoder(
 
     train(tokenizer.decoder, loss_fn, schedule, run, "decoder")
     tokenizer.cpu()
+
+
+def change_for_people(
+    tokenizer: Tokenizer,
+    clips: Sequence[Clip],
+    rank: int,
+    schedule: Schedule,
+    run: Run,
+    batch: int = BATCH,
+    window_frames: int = WINDOW_FRAMES,
+) -> None:
+    """Train low-rank changes of encoders and decoder on people's clips, in place; the codebooks stay as they are.
+
+    All features count nearly alike, since people move their legs and walk, which `channel_weights` neglects.
+    """
+    add_changes(tokenizer, rank)
+    people = [clip for clip in clips if clip.is_real]
+    device = run.torch_device
+    weights, draw = even_weights().to(device), _window_draw(people, 1.0, batch, window_frames)
+
+    def loss_fn(_step: int, generator: torch.Generator) -> dict[str, Tensor]:
+        tokenizer.quantizers.eval()  # in training mode they would move the codes
+        x = tokenizer.normalise(draw(generator)[distributed.share(batch)].to(device))
+        reconstruction, commitment = tokenizer(x)
+        frames, differences = motion_errors(reconstruction.float(), x, weights)
+        loss = frames + DECODER_DIFFERENCE_WEIGHT * differences + COMMITMENT * commitment
+        return {"loss": loss, "frames": frames, "differences": differences, "commitment": commitment}
+
+    train(tokenizer, loss_fn, schedule, run, "tokenizer")
+
+
+def smooth_for_people(
+    tokenizer: Tokenizer, clips: Sequence[Clip], schedule: Schedule, run: Run, window_frames: int = WINDOW_FRAMES
+) -> None:
+    """Train the decoder's changes further, in place, with the errors of acceleration and jerk in the loss; ids stay valid.
+
+    Without these errors the arms' mean jerk is more than twice that of the recordings (docs/model_history.md).
+    """
+    people, device = [clip for clip in clips if clip.is_real], run.torch_device
+    weights, draw = even_weights().to(device), _window_draw(people, 1.0, BATCH, window_frames)
+    tokenizer.to(device)
+
+    def loss_fn(_step: int, generator: torch.Generator) -> dict[str, Tensor]:
+        features = draw(generator)[distributed.share(BATCH)].to(device)
+        x = tokenizer.normalise(features)
+        with torch.no_grad():
+            vectors = tokenizer.embed(tokenizer.encode(features))
+        made = tokenizer.decoder(vectors).float()
+        frames, differences = motion_errors(made, x, weights)
+        jerks = sum((_difference_error(made, x, order) * weights).mean() for order in (2, 3))
+        loss = frames + DECODER_DIFFERENCE_WEIGHT * differences + JERK_WEIGHT * jerks
+        return {"loss": loss, "frames": frames, "differences": differences, "jerks": torch.as_tensor(jerks)}
+
+    train(tokenizer.decoder, loss_fn, schedule, run, "decoder")
+    tokenizer.cpu()
+
+
+def _difference_error(made: Tensor, x: Tensor, order: int) -> Tensor:
+    made, x = (one.diff(dim=1, n=order) * JERK_GAIN for one in (made, x))
+    return F.smooth_l1_loss(made, x, beta=BETA, reduction="none")
 
 
 def _set_statistics(

@@ -143,7 +143,7 @@ def train(
         return _reader_part(stage, out, run_dir or Path("runs") / stage, models)
     config = config or ("ablation" if stage == "ablation" else "compact")
     recipe = read_recipe(config, seed)
-    if stage == "tokenizer" and recipe.start:
+    if stage == "tokenizer" and recipe.start and not recipe.tokenizer.rank:
         raise CommandError(
             f"train tokenizer: {config} goes on from {recipe.start}, whose tokenizer stays; train another stage"
         )

@@ -95,7 +95,7 @@ def test_a_motion_that_does_not_return_is_not_repeated(engine: Engine) -> None:
     assert periods(engine, command)
     ids = torch.arange(6).reshape(2, 3)
     with torch.inference_mode():
-        assert repeated(engine, command, ids, Repetition(6), 2) is None
+        assert repeated(engine, engine.model.tokenizer, command, ids, Repetition(6), 2) is None
 
 
 def test_strokes_that_cannot_be_repeated_are_the_model_s_own(engine: Engine, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -84,6 +84,7 @@ def test_a_recipe_with_a_rank_writes_changes_that_its_start_uses(
     plain = Engine.load(start, threads=None, precision="fp32")
     config, out = small(tmp_path / "people.toml", steps=8), people_file(start)
     ranked = config.read_text().replace("[transformer]\n", "[transformer]\nrank = 2\nguidance = 1.5\n")
+    ranked = ranked.replace("[tokenizer]\n", "[tokenizer]\nrank = 2\n")
     config.write_text(f'start = "{start}"\n{ranked}')
     arguments = ["train", "--config", str(config), "--sample-every", "0", "--out", str(out), "--run"]
     assert main([*arguments, str(tmp_path / "without")]) == 2 and "no clip of a person" in capsys.readouterr().err
@@ -95,13 +96,19 @@ def test_a_recipe_with_a_rank_writes_changes_that_its_start_uses(
     assert main([*arguments, str(tmp_path / "run"), "--data", str(data)]) == 0
     tensors, metadata = load_tensors(out, "mmmd-people")
     assert tensors["head.up"].shape == (3 * 16, 2) and tensors["head.up"].abs().max() > 0
+    assert tensors["tokenizer.decoder.stem.up"].abs().max() > 0
     assert metadata["guidance"] == 1.5 and metadata["provenance"]["start"]["sha256"] == file_hash(finished.model)
     engine = Engine.load(start, threads=None, precision="fp32")
     assert engine.people is not None and plain.people is None
     for name, tensor in plain.model.transformer.state_dict().items():
         assert torch.equal(engine.model.transformer.state_dict()[name], tensor), name
+    for own, other in zip(engine.model.tokenizer.books, engine.people.tokenizer.books, strict=True):
+        assert torch.equal(own.codebook, other.codebook)
     config.write_text(ranked)
     assert main(["train", "transformer", "--config", str(config), "--run", str(tmp_path / "new")]) == 2
+    config.write_text(f'start = "{start}"\n' + ranked.replace("[transformer]\nrank = 2", "[transformer]"))
+    assert main(["train", "--config", str(config), "--run", str(tmp_path / "alone"), "--data", str(data)]) == 2
+    assert "tokenizer.rank" in capsys.readouterr().err
 
 
 @pytest.mark.long
