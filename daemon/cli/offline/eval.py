@@ -91,7 +91,7 @@ def eval(
     what the probes expect; the gate that `mmmd train` keeps before anything is trained on a tokenizer.
 
     real: against held-out motion of people with the evaluator of this repository: R-precision of generated against real,
-    FID of generated against the tokenizer's own. --data is the folder of docs/DATA.md.
+    FID of generated against that of the tokenizer, the checkpoint's and the one for people. --data is the folder of docs/DATA.md.
 
     paper: the tables of the paper's section 5 for the data and checkpoints given: 1 or 2 comparison, 3 speed, 4 editing in
     time, 5 upper body, 6 ablations (over steps, and over several --model). docs/evaluation.md says how all is measured.
