@@ -31,7 +31,7 @@ COLUMNS = ("R1", "R2", "R3", "FID", "MM-Dist", "Diversity", "MModality", "AITS s
 
 
 def default_splits(data: Path) -> tuple[Split, ...]:
-    """The held-out splits: "test", and for the small clips.jsonl layout also "val", on which no choice of this project depends."""
+    """The held-out splits: "test", and for the small clips.jsonl layout also "val", by which the weights for people were chosen."""
     return ("val", "test") if (data / "clips.jsonl").is_file() else ("test",)
 
 

@@ -297,7 +297,7 @@ REFUSED = [
     (("nod", "--limp", "--yes"), "", 1, "one that ships"),
     (("nod", "--limp"), "no", 1, "one that ships"),
     (("my_lift", "--limp"), None, 2, "end of input"),
-    (("My Lift", "--limp"), "", 1, "a-z"),
+    (("My Lift", "--limp"), "", 2, "a-z"),
     (("my_lift", "--limp", "--seconds", "600"), "", 2, "60 at most"),
 ]
 
