@@ -19,6 +19,7 @@ DaemonError
 ├── NoCpuBuildError                no PyTorch without GPU libraries to install
 ├── ClipError                      a gesture that cannot be read or kept             (ValueError)
 │   ├── UnknownGestureError(name)  no gesture of that name
+│   ├── GestureNameError(name)     no gesture can have that name
 │   └── GestureExistsError(name)   there is one of that name already
 └── RequestError(code)             a message that cannot be carried out              (ValueError)
 """

@@ -6,6 +6,7 @@ MmmError
 │   ├── CheckpointError                          weights that do not fit this code
 │   └── TrainingDataError                        a recipe or a training corpus
 ├── GenerationError(asked, allowed)              a request outside the model's range             (ValueError)
+│   └── TextRefusedError(text, reason)           a text that the model cannot do
 └── EvaluationError(found, allowed)              things that cannot be measured together         (ValueError)
 """
 

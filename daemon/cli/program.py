@@ -193,8 +193,8 @@ def _explain(error: Exception) -> int:
 
     wrong_files = (RobotFileError, MotionError, LogError, WrongFileError, EvaluationError)
     wrong_values = (CommandError, ConfigError, UnknownRobotError, GestureNameError, GenerationError)
-    bad_use = isinstance(error, (*wrong_values, *wrong_files)) or _names_no_file(error)
-    bad_use = bad_use and not isinstance(error, TextRefusedError)
+    is_wrong = isinstance(error, (*wrong_values, *wrong_files)) or _names_no_file(error)
+    bad_use = is_wrong and not isinstance(error, TextRefusedError)
     if isinstance(error, (DaemonError, MmmError, RetargetError)):
         return _failed(str(error), int(getattr(error, "exit_status", BAD_USE if bad_use else FAILED)))
     if isinstance(error, UnicodeEncodeError):

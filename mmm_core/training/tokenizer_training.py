@@ -23,7 +23,7 @@ from mmm_core.model.tokenizer import Tokenizer, TokenizerConfig, feature_std, ro
 from mmm_core.model.vqvae import HEIGHT_CHANNELS, ROOT_HEIGHT, VqVae, VqVaeConfig
 from mmm_core.motion.features import joints_of
 from mmm_core.training.batches import Clip
-from mmm_core.training.run import Run, Schedule, train
+from mmm_core.training.run import LossFn, Run, Schedule, train
 
 WINDOW_FRAMES = 40
 BATCH = 128
@@ -35,7 +35,10 @@ BETA = 0.3
 DIFFERENCE_GAIN, DIFFERENCE_WEIGHT = 5.0, 0.3
 DECODER_DIFFERENCE_WEIGHT = 0.6
 JERK_GAIN, JERK_WEIGHT = 10.0, 0.3
-"""Of the second and third differences between frames, in the loss of the decoder for people's motion."""
+"""Factor on the second and third differences between frames, and the weight of their errors in the loss of the decoder for
+people's motion."""
+Draw = Callable[[torch.Generator], Tensor]
+"""Draws (B, T, F) windows of motion."""
 
 
 def channel_weights() -> Tensor:
@@ -124,36 +127,8 @@ def go_on_with_tokenizer(
     tokenizer: Tokenizer, clips: Sequence[Clip], schedule: Schedule, run: Run, name: str, real_share: float = 0.12
 ) -> None:
     """Train a tokenizer that has codes already further, in place; `name` names the stage in the run's folder."""
-    device = run.torch_device
-    weights, draw = channel_weights().to(device), _window_draw(clips, real_share, BATCH, WINDOW_FRAMES)
-
-    def loss_fn(_step: int, generator: torch.Generator) -> dict[str, Tensor]:
-        x = tokenizer.normalise(draw(generator)[distributed.share(BATCH)].to(device))
-        reconstruction, commitment = tokenizer(x)
-        frames, differences = motion_errors(reconstruction.float(), x, weights)
-        loss = frames + DECODER_DIFFERENCE_WEIGHT * differences + COMMITMENT * commitment
-        return {"loss": loss, "frames": frames, "differences": differences, "commitment": commitment}
-
-    train(tokenizer, loss_fn, schedule, run, name)
-
-
-def tune_decoder(
-    tokenizer: Tokenizer, clips: Sequence[Clip], schedule: Schedule, run: Run, real_share: float = 0.12
-) -> None:
-    """Train the decoder alone, in place; encoders and codebooks stay, so existing ids stay valid."""
-    device = run.torch_device
-    weights, draw = channel_weights().to(device), _window_draw(clips, real_share, BATCH, WINDOW_FRAMES)
-    tokenizer.to(device).decoder.requires_grad_(True)
-
-    def loss_fn(_step: int, generator: torch.Generator) -> dict[str, Tensor]:
-        features = draw(generator)[distributed.share(BATCH)].to(device)
-        with torch.no_grad():
-            vectors = tokenizer.embed(tokenizer.encode(features))
-        frames, differences = motion_errors(tokenizer.decoder(vectors).float(), tokenizer.normalise(features), weights)
-        return {"loss": frames + DECODER_DIFFERENCE_WEIGHT * differences, "frames": frames, "differences": differences}
-
-    train(tokenizer.decoder, loss_fn, schedule, run, "decoder")
-    tokenizer.cpu()
+    draw = _window_draw(clips, real_share, BATCH, WINDOW_FRAMES)
+    train(tokenizer, _reconstruction_loss(tokenizer, draw, channel_weights(), BATCH, run), schedule, run, name)
 
 
 def change_for_people(
@@ -170,19 +145,18 @@ def change_for_people(
     All features count nearly alike, since people move their legs and walk, which `channel_weights` neglects.
     """
     add_changes(tokenizer, rank)
-    people = [clip for clip in clips if clip.is_real]
-    device = run.torch_device
-    weights, draw = even_weights().to(device), _window_draw(people, 1.0, batch, window_frames)
-
-    def loss_fn(_step: int, generator: torch.Generator) -> dict[str, Tensor]:
-        tokenizer.quantizers.eval()  # in training mode they would move the codes
-        x = tokenizer.normalise(draw(generator)[distributed.share(batch)].to(device))
-        reconstruction, commitment = tokenizer(x)
-        frames, differences = motion_errors(reconstruction.float(), x, weights)
-        loss = frames + DECODER_DIFFERENCE_WEIGHT * differences + COMMITMENT * commitment
-        return {"loss": loss, "frames": frames, "differences": differences, "commitment": commitment}
-
+    draw = _window_draw([clip for clip in clips if clip.is_real], 1.0, batch, window_frames)
+    loss_fn = _reconstruction_loss(tokenizer, draw, even_weights(), batch, run, moves_codes=False)
     train(tokenizer, loss_fn, schedule, run, "tokenizer")
+
+
+def tune_decoder(
+    tokenizer: Tokenizer, clips: Sequence[Clip], schedule: Schedule, run: Run, real_share: float = 0.12
+) -> None:
+    """Train the decoder alone, in place; encoders and codebooks stay, so existing ids stay valid."""
+    tokenizer.decoder.requires_grad_(True)
+    draw = _window_draw(clips, real_share, BATCH, WINDOW_FRAMES)
+    _train_decoder(tokenizer, draw, channel_weights(), schedule, run)
 
 
 def smooth_for_people(
@@ -192,28 +166,56 @@ def smooth_for_people(
 
     Without these errors the arms' mean jerk is more than twice that of the recordings (docs/model_history.md).
     """
-    people, device = [clip for clip in clips if clip.is_real], run.torch_device
-    weights, draw = even_weights().to(device), _window_draw(people, 1.0, BATCH, window_frames)
+    draw = _window_draw([clip for clip in clips if clip.is_real], 1.0, BATCH, window_frames)
+    _train_decoder(tokenizer, draw, even_weights(), schedule, run, JERK_WEIGHT)
+
+
+def _reconstruction_loss(
+    tokenizer: Tokenizer, draw: Draw, weights: Tensor, batch: int, run: Run, *, moves_codes: bool = True
+) -> LossFn:
+    """The loss of a tokenizer that has codes already; its training moves them where `moves_codes` is set."""
+    device = run.torch_device
+    weights = weights.to(device)
+
+    def loss_fn(_step: int, generator: torch.Generator) -> dict[str, Tensor]:
+        tokenizer.quantizers.train(moves_codes)
+        x = tokenizer.normalise(draw(generator)[distributed.share(batch)].to(device))
+        reconstruction, commitment = tokenizer(x)
+        frames, differences = motion_errors(reconstruction.float(), x, weights)
+        loss = frames + DECODER_DIFFERENCE_WEIGHT * differences + COMMITMENT * commitment
+        return {"loss": loss, "frames": frames, "differences": differences, "commitment": commitment}
+
+    return loss_fn
+
+
+def _train_decoder(
+    tokenizer: Tokenizer, draw: Draw, weights: Tensor, schedule: Schedule, run: Run, jerk_weight: float = 0.0
+) -> None:
+    """Train what needs a gradient in the decoder, on the ids that the encoders give."""
+    device = run.torch_device
+    weights = weights.to(device)
     tokenizer.to(device)
 
     def loss_fn(_step: int, generator: torch.Generator) -> dict[str, Tensor]:
         features = draw(generator)[distributed.share(BATCH)].to(device)
-        x = tokenizer.normalise(features)
         with torch.no_grad():
             vectors = tokenizer.embed(tokenizer.encode(features))
-        made = tokenizer.decoder(vectors).float()
+        made, x = tokenizer.decoder(vectors).float(), tokenizer.normalise(features)
         frames, differences = motion_errors(made, x, weights)
-        jerks = sum((_difference_error(made, x, order) * weights).mean() for order in (2, 3))
-        loss = frames + DECODER_DIFFERENCE_WEIGHT * differences + JERK_WEIGHT * jerks
-        return {"loss": loss, "frames": frames, "differences": differences, "jerks": torch.as_tensor(jerks)}
+        losses = {
+            "loss": frames + DECODER_DIFFERENCE_WEIGHT * differences,
+            "frames": frames,
+            "differences": differences,
+        }
+        if jerk_weight:
+            losses["jerks"] = sum(
+                (_difference_error(made, x, weights, order, JERK_GAIN) for order in (2, 3)), start=torch.zeros(())
+            )
+            losses["loss"] = losses["loss"] + jerk_weight * losses["jerks"]
+        return losses
 
     train(tokenizer.decoder, loss_fn, schedule, run, "decoder")
     tokenizer.cpu()
-
-
-def _difference_error(made: Tensor, x: Tensor, order: int) -> Tensor:
-    made, x = (one.diff(dim=1, n=order) * JERK_GAIN for one in (made, x))
-    return F.smooth_l1_loss(made, x, beta=BETA, reduction="none")
 
 
 def _set_statistics(
@@ -234,14 +236,16 @@ def _set_statistics(
 def motion_errors(reconstruction: Tensor, x: Tensor, weights: Tensor) -> tuple[Tensor, Tensor]:
     """Weighted errors of frames and of differences between frames."""
     frames = (F.smooth_l1_loss(reconstruction, x, beta=BETA, reduction="none") * weights).mean()
-    gain = DIFFERENCE_GAIN
-    steps = F.smooth_l1_loss(reconstruction.diff(dim=1) * gain, x.diff(dim=1) * gain, beta=BETA, reduction="none")
-    return frames, (steps * weights).mean()
+    return frames, _difference_error(reconstruction, x, weights, 1, DIFFERENCE_GAIN)
 
 
-def _window_draw(
-    clips: Sequence[Clip], real_share: float, batch: int, window: int
-) -> Callable[[torch.Generator], Tensor]:
+def _difference_error(reconstruction: Tensor, x: Tensor, weights: Tensor, order: int, gain: float) -> Tensor:
+    """Weighted error of the `order`-th differences between frames, enlarged by `gain`."""
+    made, wanted = (one.diff(dim=1, n=order) * gain for one in (reconstruction, x))
+    return (F.smooth_l1_loss(made, wanted, beta=BETA, reduction="none") * weights).mean()
+
+
+def _window_draw(clips: Sequence[Clip], real_share: float, batch: int, window: int) -> Draw:
     """A function that draws (batch, window, F) windows, `real_share` of them from real motion where there are both kinds."""
     synth = [c.features for c in clips if not c.is_real and len(c.features) >= window]
     real = [c.features for c in clips if c.is_real and len(c.features) >= window]

@@ -66,7 +66,7 @@ def test_a_caption_beside_others_has_ids_of_the_models_own_tokenizer(engine: Eng
 
 
 def test_a_row_that_holds_ids_keeps_them(engine: Engine, without: Engine) -> None:
-    """It is filled with the model's own weights, whose ids they are."""
+    """The ids are those of the model's own tokenizer, so the model's own weights fill the rest of the row."""
     states = engine.read([CAPTION])
     row = torch.full((20, engine.model.tokenizer.n_codebooks), engine.model.transformer.ids.mask)
     row[:5] = engine.fill(["wave"], engine.read(["wave"]), [row], [1])[0][:5]
