@@ -37,6 +37,8 @@ _MOST_WORSE = 0.01
 which begins from poses pushed all the way out. With 0.02 two of 80 claps of Reachy stay more than 25 mm apart, with 0.01 none."""
 _ENOUGH = 0.005
 """Such an increase below which the first path without contact is taken; after a larger one the program goes on."""
+_ANOTHER_RAD = 0.03
+"""Radians by which an angle must be pushed further for the program to begin with these poses as well."""
 _AROUND_CUT = 3
 """Frames on both sides of the end of a block that change where braking from this end touches."""
 
@@ -119,8 +121,10 @@ class BlockPlanner:
                     return better[0], stretches(touching)
         eased, interventions = self._avoidance.push_out(posed, begin.position_rad, least)
         path, hit, least = self._limited(task, eased, least)
-        # From the same poses the program finds the same path once more.
-        if (interventions or hit.any()) and (pushed is None or np.any(eased != pushed)):
+        # From nearly the same poses the program finds the same path once more, unless the limiter found a free one to begin with.
+        moved_rad = np.inf if pushed is None else float(np.abs(eased - pushed).max())
+        is_another = moved_rad > (_ANOTHER_RAD if found and hit.any() else 0.0)
+        if (interventions or hit.any()) and is_another:
             better = self._refined(task, path, least, is_free=not hit.any())
             if better is not None:
                 found.append(better[0])

@@ -223,9 +223,11 @@ class PairDistances:
         n = T if with_joints else 0
         axis, anchor = np.empty((n, model.njnt, 3)), np.empty((n, model.njnt, 3))
         xpos, xmat, xaxis, xanchor, qpos = data.geom_xpos, data.geom_xmat, data.xaxis, data.xanchor, data.qpos
-        address, kinematics = self._address, mujoco.mj_kinematics
-        for i, q in enumerate(q_rad):
-            qpos[address] = q
+        kinematics = mujoco.mj_kinematics
+        angles = np.repeat(model.qpos0[None], T, 0)
+        angles[:, self._address] = q_rad
+        for i, q in enumerate(angles):
+            qpos[:] = q
             kinematics(model, data)
             place[i], turn[i] = xpos, xmat
             if with_joints:

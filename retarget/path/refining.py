@@ -42,6 +42,8 @@ _STUCK_M, _STUCK_SHARE = 0.25, 0.8
 """Metres of room that all poses lack together and increase of a frame's cost above which the program ends; less metres, and the
 share of them that each of two rounds in a row left, above which it ends as well. Arms are then deep in the body, and the program
 leads them out only from poses pushed out. A program whose path has not become worse may still free hands that meet in a clap."""
+_PATIENCE, _LESS = 5, 0.9
+"""Rounds after which a program without a free path ends when none of them lacked less than this share of the least before them."""
 _STIFFNESS = 4e4
 """Weight of the squared metres by which a pair is too near: a millimetre costs as much as 11 degrees in one frame."""
 _STEADY = Steady(1e-3, 1e-2)
@@ -94,6 +96,7 @@ class Refiner:
         program = self._program(control, period_s)
         loss_rad = self._limits.acceleration_rad_s2 * period_s**2
         more_m, worse, lacked_m, within = np.full(N, _AIM_M), 0.0, [np.inf], np.zeros(0, np.int64)
+        is_found = False
         hit: NDArray[np.bool_] = np.zeros(N, bool)
         poses = BoundedPoses.of(control, within, brakes_after, loss_rad)
         near, least = self._near(poses, least)
@@ -113,10 +116,13 @@ class Refiner:
             lacked_m.append(float(lack_m.sum()))
             if _is_hopeless(lacked_m, worse / n_frames):
                 return
+            if not is_found and min(lacked_m[-_PATIENCE:]) > _LESS * min(lacked_m[:-_PATIENCE], default=np.inf):
+                break
             if not hit.any():
                 hit = touching(control, least, Seen(poses.control_rad, near))
                 within = np.union1d(within, np.flatnonzero(hit))
                 if not hit.any():
+                    is_found = True
                     yield control.copy(), worse / n_frames
             more_m[hit] += _MORE_M
             more_m[:-1][hit[1:] & ~hit[:-1]] += _MORE_M
