@@ -15,7 +15,7 @@ from mmm_core.errors import GenerationError
 from mmm_core.generate.sentence_reader import SentenceReader
 from mmm_core.inference.checkpoint import Model
 from mmm_core.inference.people_weights import PeopleWeights
-from mmm_core.language.commands import PlainCommand, Reading, read_exactly
+from mmm_core.language.commands import MOST_STEPS, PlainCommand, Reading, read_exactly
 from mmm_core.language.scope import ScopeVerdict, clauses_of, unreadable, with_clauses
 from mmm_core.model.clip import ClipText
 from mmm_core.model.sampling import FirstStep, SamplingSettings, fill
@@ -271,7 +271,10 @@ class MotionModel:
 
 
 def nothing_to_do(reading: Reading) -> ScopeVerdict:
-    """The verdict on a text that asks for nothing, or only says what not to do."""
+    """The verdict on a text that asks for nothing, only says what not to do, or asks for too much."""
+    if reading.too_many:
+        why = f"{reading.too_many} commands, at most {MOST_STEPS} fit into a text; say the others in texts of their own"
+        return ScopeVerdict("rejected", 0.0, "", f"nothing is done: {why}")
     denied = "', '".join(reading.denied)
     why = f"it only says not to do '{denied}'" if denied else "it asks for no movement; to move, say what to do: 'nod'"
     return ScopeVerdict("rejected", 0.0, "", f"nothing is to be done: {why}")

@@ -107,6 +107,8 @@ class SentenceReader:
 
     def _read(self, text: str) -> Reading:
         by_rules = read(text)
+        if by_rules.too_many:
+            return by_rules
         words = self._words_to_understand(by_rules, text)
         if not words:
             return self._as_surely_parsed(by_rules) if by_rules.text == text and not by_rules.steps else by_rules

@@ -20,8 +20,8 @@ from mmm_core.language.ellipsis_patterns import KEEPS_ON, ONLY_SIDE, THING
 from mmm_core.language.limbs import is_gesture_verb
 from mmm_core.language.requests import everyday
 
-MOST_COMMANDS, MOST_WORDS = 8, 60
-"""Largest number of commands and of words in a text that is divided; a longer text stays one command."""
+MOST_WORDS = 60
+"""Largest number of words in a text that is divided; a longer text stays one command."""
 _ALL_AGAIN = re.compile(
     r"(?:and )?(?:repeat|again|(?:do|repeat) (?:it|that|them|all|everything|the lot)(?: all)?(?: again)?|the same again|and again)"
 )
@@ -56,7 +56,7 @@ def commands_in_turn(text: str) -> list[str]:
         return [text]
     bare = [_bare(c) for c in _in_turn(" ".join(text.split()))]
     readable = all(_READS.search(c) for c in bare)
-    return bare if 1 < len(bare) <= MOST_COMMANDS and readable else [text]
+    return bare if len(bare) > 1 and readable else [text]
 
 
 def _in_turn(text: str) -> list[str]:
@@ -83,7 +83,7 @@ def _divided(text: str) -> list[str]:
     for i, span in enumerate(spans):
         clause = span.of(text)
         if len(parts) > 1 and _ALL_AGAIN.fullmatch(_bare(clause)):
-            return parts * 2 if 2 * len(parts) <= MOST_COMMANDS else parts
+            return parts * 2
         if (
             len(parts) > 1
             and (again := _ALL_WITH.fullmatch(_bare(clause)))
@@ -156,6 +156,7 @@ def _listed(text: str, whole: _Span) -> list[_Span]:
             or filled
             or everyday(part)
             or (len(parts) > 2 and is_gesture_verb(part))
+            or (i > 1 and _ALL_AGAIN.fullmatch(part))
         )
         wholes.append(filled or (wholes[-1] if i and KEEPS_ON.match(part) else part))
     if _are_counted(parts) or (len(parts) > 2 and all(map(_NOUN.match, parts))):

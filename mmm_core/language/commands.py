@@ -15,8 +15,8 @@ from mmm_core.language.moods import MOODS
 
 EXACTLY = "exactly:"
 """Prefix of a text that is read verbatim."""
-MOST_STEPS, MOST_AT_ONCE = 8, 3
-"""Largest number of steps in a text read verbatim, and of commands in a step: the model has three body parts."""
+MOST_STEPS, MOST_AT_ONCE = 16, 3
+"""Largest number of steps in a text, and of commands in a step: the model has three body parts."""
 _MARKS = re.compile(r"[();+]")
 _COMMAND = re.compile(r"(?P<text>[^()]*?[a-z][^()]*?)\s*(?:\((?P<manner>[^()]*)\))?", re.IGNORECASE)
 _SAID = re.compile(
@@ -64,6 +64,7 @@ class Reading:
         notes: changes that the speaker may not expect.
         plain: whether the sentence is passed on unchanged.
         outside: the probability that the sentence asks for no gesture of the corpus; 0 where nobody was asked.
+        too_many: number of commands in turn of a sentence that has more than `MOST_STEPS` and of which nothing is done; else 0.
     """
 
     text: str
@@ -72,6 +73,7 @@ class Reading:
     notes: tuple[str, ...] = ()
     plain: bool = False
     outside: float = 0.0
+    too_many: int = 0
 
     @property
     def sentences(self) -> tuple[str, ...]:

@@ -16,7 +16,7 @@ from mmm_core.language.alternatives import anything_but, otherwise
 from mmm_core.language.at_once import divided, same_limbs
 from mmm_core.language.clause_patterns import SPEAKS_OF_AN_ACT
 from mmm_core.language.clauses import MOST_WORDS, commands_in_turn
-from mmm_core.language.commands import MOST_AT_ONCE, PlainCommand, Reading, read_exactly
+from mmm_core.language.commands import MOST_AT_ONCE, MOST_STEPS, PlainCommand, Reading, read_exactly
 from mmm_core.language.completed_at_once import base_of
 from mmm_core.language.contrasts import contrasted
 from mmm_core.language.corrections import corrected
@@ -105,7 +105,10 @@ def read(text: str, *, by_rules_alone: bool = False) -> Reading:
     rest, hand = _for_all(rest)
     hand = hand or first_hand
     rest = rest if hand else with_hand_named_after(rest)
-    for clause in of_one_arm(commands_in_turn(of_one_thing(with_sides(rest)))):
+    clauses = of_one_arm(commands_in_turn(of_one_thing(with_sides(rest))))
+    if len(clauses) > MOST_STEPS:
+        return Reading(text, (), too_many=len(clauses))
+    for clause in clauses:
         steps += _steps(clause + hand if hand and limbs_of(clause) == SOME_ARM else clause, notes)
     if _is_plain(text, said, steps):
         return Reading(text, ((replace(steps[0][0], text=normalised(text)),),), plain=True)
