@@ -63,6 +63,7 @@ def _post(kind: str, request: dict[str, Any], events: dict[str, Any]) -> dict[st
             "401": {"description": "the token is missing or wrong"},
             "403": {"description": "a page of another site"},
             "409": {"description": "rejected or failed, with the reason", **answer},
+            "413": {"description": "more than 64 KiB"},
             "429": {"description": "too many requests"},
             "503": {"description": "no daemon is reached", **answer},
             "504": {"description": "the daemon does not answer", **answer},

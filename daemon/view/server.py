@@ -25,11 +25,11 @@ from daemon.view.handlers import (
     UnknownAddressHandler,
 )
 from daemon.view.web_sockets import PublishedHandler, RequestHandler, TargetHandler
-from daemon.view.web_state import WebState
+from daemon.view.web_state import MOST_BYTES, WebState
 
 PAGE = Path(__file__).parent / "page"
-MOST_BYTES = 64 * 1024
-"""Bytes of a request at most, as on the ZeroMQ sockets."""
+MOST_READ_BYTES = 1024 * 1024
+"""Bytes of a request that are read at most, so that one of more than `MOST_BYTES` is told why it is refused."""
 
 
 class WebServer:
@@ -73,7 +73,7 @@ class WebServer:
                 both, server=self._state, default_handler_class=UnknownAddressHandler, default_handler_args={"page": page},
                 websocket_max_message_size=MOST_BYTES, websocket_ping_interval=10, log_function=_unlogged
             ),
-            max_body_size=MOST_BYTES, max_header_size=16 * 1024, idle_connection_timeout=60, body_timeout=5,
+            max_body_size=MOST_READ_BYTES, max_header_size=16 * 1024, idle_connection_timeout=60, body_timeout=5,
         )  # fmt: skip
 
     @property

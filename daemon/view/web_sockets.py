@@ -16,7 +16,7 @@ from daemon.client.compositions import FIRST_REPLY_TIMEOUT_S, MOTION_TIMEOUT_S
 from daemon.front.rate_limits import Rates
 from daemon.view.handlers import BaseHandler
 from daemon.view.relay import Reader, send, unreached
-from daemon.view.web_state import MOST_POSTS, MOST_SOCKETS, RATE_HZ, is_stop, type_of
+from daemon.view.web_state import MOST_BYTES, MOST_POSTS, MOST_SOCKETS, RATE_HZ, is_stop, type_of
 
 STREAM_RATE_HZ, STREAM_BURST = 500.0, 500
 """Targets per second, and targets at once, of one connection to `stream`; more are dropped, as only the newest counts."""
@@ -64,6 +64,9 @@ class RequestHandler(_Socket):
 
     async def post(self, kind: str) -> None:
         frame, server = self.request.body, self.server
+        if len(frame) > MOST_BYTES:
+            self.refuse(413, f"a request of {len(frame):,} bytes; at most {MOST_BYTES:,} are taken", "too_large")
+            return
         if not server.allows(self.request, frame):
             self.refuse(429, f"more than {RATE_HZ:g} requests a second")
             return

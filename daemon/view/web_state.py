@@ -14,6 +14,8 @@ from daemon.network.web_access import Access
 from daemon.settings.config import Endpoints
 from daemon.view.relay import Feed, Relay
 
+MOST_BYTES = 64 * 1024
+"""Bytes of a request at most, as on the ZeroMQ sockets."""
 MOST_SOCKETS = 64
 """Number of WebSockets open at a time, at most; a page has three."""
 MOST_POSTS = 32

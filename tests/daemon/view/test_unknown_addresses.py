@@ -1,4 +1,7 @@
-"""The web server's answers to unknown addresses (404) and to methods that an address does not have (405). No daemon is needed."""
+"""The web server's answers to unknown addresses (404), missing methods (405) and requests that are too large (413).
+
+No daemon is needed.
+"""
 
 from __future__ import annotations
 
@@ -12,6 +15,7 @@ from tornado.httpclient import AsyncHTTPClient, HTTPResponse
 from daemon.network.web_access import Access
 from daemon.settings.config import Endpoints
 from daemon.view.server import WebServer
+from daemon.view.web_state import MOST_BYTES
 
 TOKEN = "a-token-of-many-characters"
 
@@ -65,3 +69,11 @@ def test_a_method_that_is_not_served_is_told_which_are(tmp_path: Path) -> None:
     found = answer(tmp_path, "/v1/openapi.json", body=b"bow")
     assert found.code == 405 and found.headers["Allow"] == "GET"
     assert "allowed: GET" in json.loads(found.body)["found"]
+
+
+@pytest.mark.parametrize("kind", ["cmd", "ctl"])
+def test_a_request_that_is_too_large_is_told_how_large_it_may_be(tmp_path: Path, kind: str) -> None:
+    """The answer was an empty 400."""
+    found = answer(tmp_path, f"/v1/{kind}", body=b"w" * (MOST_BYTES + 1))
+    said = json.loads(found.body)
+    assert found.code == 413 and said["code"] == "too_large" and f"{MOST_BYTES:,}" in said["found"]
