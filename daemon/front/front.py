@@ -176,13 +176,7 @@ class Front:
     async def _serve_stream(self) -> None:
         """Take the newest target of each sender, so that a sender that floods does not displace the targets of another."""
         while True:
-            newest: dict[int, list[bytes]] = {}
-            message: Message | None = await self._stream_inbox.receive()
-            for n in range(1, MOST_TARGETS + 1):
-                newest[message.fd] = message.parts
-                message = await self._stream_inbox.waiting() if n < MOST_TARGETS else None
-                if message is None:
-                    break
+            newest = {message.fd: message.parts async for message in self._stream_inbox.arrived(MOST_TARGETS)}
             for parts in newest.values():
                 if self._record is not None:
                     self._record("stream", without_secret(parts[0], self._targets.secret))

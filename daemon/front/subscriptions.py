@@ -93,14 +93,11 @@ class LastValues:
 
     async def _take_subscriptions(self) -> None:
         """Wait for a subscription, and take all that have arrived by then."""
-        message = await self._inbox.receive()
-        for n in range(1, MOST_AT_A_LOOK + 1):
+        n = 0
+        async for message in self._inbox.arrived(MOST_AT_A_LOOK):
+            n += 1
             too_much = self._subscriptions.take(message.parts[0], message.fd, time.monotonic())
             if too_much:
                 self._guard.shut_down(message.fd, "too many subscriptions", too_much)
             if n % MOST_AT_ONCE == 0:
                 await asyncio.sleep(0)
-            following = await self._inbox.waiting() if n < MOST_AT_A_LOOK else None
-            if following is None:
-                return
-            message = following

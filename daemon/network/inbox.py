@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+from collections.abc import AsyncIterator
 from typing import NamedTuple, cast
 
 import zmq
@@ -77,6 +78,16 @@ class Inbox:
                 return None
             if (message := self._message(frame)) is not None:
                 return message
+
+    async def arrived(self, most: int) -> AsyncIterator[Message]:
+        """The next message, and those after it that have arrived already, at most `most` in all; none is lost between two calls."""
+        message = await self.receive()
+        for n in range(1, most + 1):
+            yield message
+            following = await self.waiting() if n < most else None
+            if following is None:
+                return
+            message = following
 
     def _message(self, frame: zmq.Frame) -> Message | None:
         """The message that begins with a frame; None for a frame of a message that is being discarded."""
