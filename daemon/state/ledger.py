@@ -13,7 +13,7 @@ import msgspec
 
 from daemon.wire.codec import WireError
 from daemon.wire.event_base import Event
-from daemon.wire.events import Accepted, Progress
+from daemon.wire.events import Accepted, Failed, Progress, Rejected
 from daemon.wire.requests import Command, tag_of
 
 KEPT = 1024
@@ -141,10 +141,12 @@ class Ledger:
         return entry
 
     def emit(self, entry: Entry, event: Event) -> None:
-        """Send an event of a command to all its routes; nothing follows the event that ends it."""
+        """Send an event of a command to all its routes, with its id and kind; nothing follows the event that ends it."""
         if entry.ended:
             return
         event.id = entry.id
+        if isinstance(event, Rejected | Failed) and not event.asked:
+            event.asked = tag_of(entry.request)
         self.stamp(event)
         entry.keep(event)
         entry.ended = event.terminal

@@ -8,7 +8,7 @@ import msgspec
 
 from daemon.generator.generated import GeneratorError
 from daemon.state.ledger import Entry
-from daemon.state.machine import CommandRefusedError
+from daemon.state.machine import CommandRefusedError, Trigger
 from daemon.wire.events import Cancelled, Failed, Rejected
 from daemon.wire.requests import Command, Lease, tag_of
 from daemon.wire.showing import in_words
@@ -23,11 +23,11 @@ class NotPlayableError(Exception):
 
 
 def refusal(request_id: str, error: CommandRefusedError) -> Rejected:
-    """The event of a command that the robot's state does not allow."""
+    """The event of a command that the robot's state does not allow; the ledger fills in what a motion was asked by."""
     return Rejected(
         id=request_id,
         code="wrong_state",
-        asked=error.command.value,
+        asked="" if error.command is Trigger.SAY else error.command.value,
         found=f"the robot is {in_words(error.state.value)}",
         allowed=", ".join(error.allowed),
         do=error.do,
@@ -64,8 +64,8 @@ def as_failure(event: Rejected | Failed) -> Failed:
 
 
 def failed(code: str, found: str, allowed: str, do: str) -> Failed:
-    """The event of a command that could not be carried out."""
-    return Failed(code=code, asked="say", found=found, allowed=allowed, do=do)
+    """The event of a command that could not be carried out; the ledger fills in by what kind of request it was asked."""
+    return Failed(code=code, asked="", found=found, allowed=allowed, do=do)
 
 
 def lease_held(lease: Entry) -> Rejected:

@@ -7,7 +7,7 @@ import time
 import pytest
 
 from daemon.wire import events as ev
-from daemon.wire.requests import Gesture, Say
+from daemon.wire.requests import Gesture, Say, tag_of
 from tests.support.harness import RATE_HZ
 
 pytestmark = [pytest.mark.timeout(120), pytest.mark.realtime]
@@ -155,6 +155,7 @@ def test_say_in_another_state_is_refused_with_what_is_allowed(robot, talk):
     robot.estop()
     for request in (Say(id="e1", text="wave", when="after"), Gesture(id="e2", name="nod")):
         talk.send(request)
-        assert talk.until(request.id, ev.Rejected).code == "wrong_state"
+        refused = talk.until(request.id, ev.Rejected)
+        assert (refused.code, refused.asked) == ("wrong_state", tag_of(request))
     robot.reset()
     robot.arm()
