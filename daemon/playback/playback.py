@@ -211,17 +211,23 @@ class Playback:
 
     async def follow_gaze(self) -> None:
         """Continue the motion that is played, or the pose that is held, with the gaze that is now set."""
-        player = self._player
-        if player is not None and (player.stream is not None or self._buffer.running):
-            async with self._lock:
-                if player is self._player:
-                    await player.follow_gaze()
+        if await self._moves_with_gaze():
             return
         machine = self._follower.machine
         await sleep_while(self._clock, lambda: machine.state is RobotState.MOVING, BRAKING_TIMEOUT_S)
-        if machine.state in (RobotState.IDLE, RobotState.HOLDING) and self._follower.can_take_over:
+        if not await self._moves_with_gaze() and self._follower.can_take_over:  # a motion may have begun meanwhile
             held = self._buffer.raw_now
             await self._take_idle(HeldPose(held.at(np.zeros(round(GAZE_S * held.fps), np.intp))))
+
+    async def _moves_with_gaze(self) -> bool:
+        """Make the rest of the motion that is played with the gaze that is now set; returns false when none is played."""
+        player = self._player
+        if player is None or (player.stream is None and not self._buffer.running):
+            return False
+        async with self._lock:
+            if player is self._player:
+                await player.follow_gaze()
+        return True
 
     def start(self, work: Coroutine[Any, Any, None]) -> None:
         """Run a coroutine in the background."""
@@ -241,16 +247,15 @@ class Playback:
     def _fail(self, entry: Entry | None, found: str, plan_id: int) -> None:
         self._forget()
         if entry is not None:
-            self._ledger.emit(
-                entry, ending(plan_id, "", failed("bus_dropped", found, "all of them", "see the daemon's log"))
-            )
+            failure = failed("bus_dropped", found, "all of them", "see the daemon's log")
+            self._ledger.emit(entry, ending(plan_id, "", failure))
 
     async def _take_idle(self, source: MotionSource) -> None:
-        """Play idle movements, or the held pose with a new gaze."""
-        epoch, entry, halted = self._buffer.epoch, self.entry, self._follower.stopped
+        """Play idle movements, or the held pose with a new gaze; neither ever takes the place of a command."""
+        epoch, halted = self._buffer.epoch, self._follower.stopped
 
         def alive() -> bool:
-            same = self.entry is entry and epoch == self._buffer.epoch and halted == self._follower.stopped
+            same = self.entry is None and epoch == self._buffer.epoch and halted == self._follower.stopped
             return same and self._follower.machine.state in (RobotState.IDLE, RobotState.HOLDING)
 
         try:
@@ -277,8 +282,9 @@ class Playback:
         except NotPlayableError as error:
             self._give_up(player, error.event)
         except RetargetError as error:
-            event = failed("retarget", str(error), "a motion that fits the robot", "say it in other words")
-            self._give_up(player, event)
+            self._give_up(
+                player, failed("retarget", str(error), "a motion that fits the robot", "say it in other words")
+            )
         except Exception as error:
             self._give_up(player, failed("internal", str(error), "", "see the daemon's log"))
             raise

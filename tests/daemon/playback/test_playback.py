@@ -219,6 +219,32 @@ def test_a_gaze_turns_the_head_of_the_motion_and_of_the_held_pose():
         front.bus.assert_limits_kept()
 
 
+def test_a_gaze_set_as_a_motion_ends_takes_no_command_away():
+    """It waited until the robot had stopped, and then took the place of the next motion, which had begun and now never ended."""
+    with front_rig() as front:
+
+        async def work() -> None:
+            await play(front, "a", clip(RIGHT))
+            await front.until(lambda: front.playback.entry is None)
+            assert front.moves, "the bus process has not reported yet that it holds"
+            front.layers.gaze_deg = (10.0, 0.0)
+            front.playback.start(front.playback.follow_gaze())
+            await asyncio.sleep(0)
+            for _ in range(5):
+                front.bus.cycle()
+            front.late_cycles = 0
+            assert await play(front, "b", clip(LEFT))
+            front.follower.update()
+            assert not front.moves, "it is seen to hold, and no frame of the new motion yet"
+            front.bus.cycle()
+            for _ in range(5):
+                await asyncio.sleep(0)
+            await front.until(lambda: "done b" in front.kinds)
+
+        front.run(work)
+        front.bus.assert_limits_kept()
+
+
 def test_idle_movements_begin_after_a_while_and_give_way():
     with front_rig(idle="calm") as front:
 
