@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from mmm_core.motion.skeleton import JOINT_NAMES, PARENTS, across_shoulders, matrix_from_quat, standing_joints
 from retarget.errors import MotionError
+from retarget.human.subproblems import unit
 from retarget.robot.kinematics import cross
 
 Array = NDArray[np.float64]
@@ -142,8 +143,7 @@ def _frame(left: Array, up: Array, key: str) -> Array:
         if flat.any():
             found = f"joints on one line or point in frame {int(flat.argmax())}, {int(flat.sum())} such frames"
             raise MotionError(key, found, "hips, shoulders and spine of a person, in HumanML3D's order")
-    x = left / np.linalg.norm(left, axis=-1, keepdims=True)
-    z = z / np.linalg.norm(z, axis=-1, keepdims=True)
+    x, z = unit(left), unit(z)
     return np.stack([x, cross(z, x), z], -1)
 
 

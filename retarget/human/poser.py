@@ -22,7 +22,7 @@ from retarget.human.objective import ArmObjective, PoseObjective
 from retarget.human.trunk import Trunk
 from retarget.human.weighing import bone_weights
 from retarget.path.limit_path import Angles
-from retarget.path.limits import JointLimits
+from retarget.path.limits import JointLimits, within
 from retarget.path.lookahead_qp import LeastSquares, least_moving
 from retarget.robot.kinematics import Kinematics
 
@@ -210,7 +210,7 @@ class Poser:
             bones = arms.bones(x)
         lost = np.zeros(0)
         for _ in range(_REST_STEPS):
-            x = np.clip(self._calmer(arms, x, bones, shown, None, _REST_PULL, before), arms.low, arms.high)
+            x = within(self._calmer(arms, x, bones, shown, None, _REST_PULL, before), arms.low, arms.high)
             bones = arms.bones(x)
             lost = np.maximum(np.abs(bones.upper - shown[0]), np.abs(bones.fore - shown[1])).max(-1)
             if lost.max() < _SEEN_RAD:

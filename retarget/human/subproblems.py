@@ -82,4 +82,4 @@ def frame(a: Array, b: Array) -> Array:
 
 def unit(v: Array) -> Array:
     """(..., 3) vectors scaled to length one; a zero vector stays near zero."""
-    return v / np.maximum(np.linalg.norm(v, axis=-1, keepdims=True), 1e-9)
+    return v / np.maximum(np.sqrt(np.vecdot(v, v)), 1e-9)[..., None]

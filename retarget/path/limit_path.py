@@ -14,7 +14,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from retarget.path.limits import JointLimits, keeps, limit_step
+from retarget.path.limits import JointLimits, keeps, limit_step, within
 from retarget.path.lookahead_qp import Bounds, LeastSquares, frames_between, nearer_path
 
 Array = NDArray[np.float64]
@@ -103,12 +103,12 @@ def limit_path(
         if not follows.all():
             near = reference_rad[k : k + n + _AHEAD_FRAMES]
             _solve(objective, k, near, follows, part, position, velocity, limits, period_s, settled_rad)
-            np.clip(part[:n], limits.position_min_rad, limits.position_max_rad, out=part[:n])
+            part[:n] = within(part[:n], limits.position_min_rad, limits.position_max_rad)
             part[:n] = _follow(part[:n], position, velocity, limits, period_s)
         before = path[k + n - 2] if n > 1 else position
         position, velocity = path[k + n - 1].copy(), (path[k + n - 1] - before) / period_s
         # The frames beyond this window are planned again from its end.
-        part[n:] = np.clip(reference_rad[k + n : k + len(part)], limits.position_min_rad, limits.position_max_rad)
+        part[n:] = within(reference_rad[k + n : k + len(part)], limits.position_min_rad, limits.position_max_rad)
     return path
 
 

@@ -72,7 +72,7 @@ def limit_step(
     """
     a, v_max = limits.acceleration_rad_s2, limits.velocity_rad_s
     ends = limits.position_min_rad, limits.position_max_rad
-    target_rad = _within(target_rad, *ends)
+    target_rad = within(target_rad, *ends)
     gap = target_rad - position_rad
     follow = None if target_velocity_rad_s is None else np.clip(target_velocity_rad_s, -v_max, v_max)
     error = gap if follow is None else gap - follow * period_s
@@ -90,13 +90,13 @@ def limit_step(
     if follow is not None:
         wanted += follow
         reached &= np.abs(direct - follow) <= a * period_s
-    following = position_rad + _within(wanted, low, high) * period_s
-    end = _within(following, *ends)
+    following = position_rad + within(wanted, low, high) * period_s
+    end = within(following, *ends)
     following = np.where(np.abs(following - end) < _ROUNDING_RAD, end, following)
     return np.where(reached, target_rad, following)
 
 
-def _within(values: Array, low: Array, high: Array) -> Array:
+def within(values: Array, low: Array, high: Array) -> Array:
     """The result of `np.clip`, computed three times as fast for the few joints of a robot."""
     return np.minimum(np.maximum(values, low), high)
 

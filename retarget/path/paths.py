@@ -13,6 +13,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from retarget.path.limits import within
 from retarget.path.report import Comparison, RetargetReport
 from retarget.path.spline_places import on_spline
 
@@ -77,10 +78,10 @@ class JointPath:
         c0, c1, c2 = self.control_rad[k], self.control_rad[k + 1], self.control_rad[k + 2]
         place = on_spline(self.control_rad, k, u[:, 0])
         # Rounding must not carry a path that runs along a position limit beyond it.
-        place = np.clip(place, np.minimum(np.minimum(c0, c1), c2), np.maximum(np.maximum(c0, c1), c2))
+        place = within(place, np.minimum(np.minimum(c0, c1), c2), np.maximum(np.maximum(c0, c1), c2))
         if self.ends_rad is None:
             return place
-        end = np.clip(place, *self.ends_rad)
+        end = within(place, *self.ends_rad)
         return np.where(np.abs(place - end) < _ROUNDING_RAD, end, place)
 
     def velocity_at(self, times_s: Array) -> Array:
