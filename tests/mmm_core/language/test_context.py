@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from mmm_core.language.command_changes import NothingToReferToError
-from mmm_core.language.commands import PlainCommand, exactly, read_exactly
+from mmm_core.language.commands import MOST_STEPS, PlainCommand, exactly, read_exactly
 from mmm_core.language.context import conversation, in_context
 from mmm_core.language.manner import Manner
 from mmm_core.language.reading import read
@@ -135,7 +135,7 @@ def test_whatever_is_meant_can_be_written_and_read_exactly(text: str, before: st
 @pytest.mark.parametrize(
     "text",
     ["wave (0.5 times as fast)", "exactly:", "exactly: wave + ", "exactly: wave (blue)", "exactly: (2)",
-     "exactly: " + "nod; " * 9 + "nod",
+     "exactly: " + "nod; " * MOST_STEPS + "nod",
      "exactly: a + b + c + d"],
 )  # fmt: skip
 def test_a_text_that_is_not_written_exactly(text: str) -> None:

@@ -32,7 +32,7 @@ def test_as_many_as_a_text_may_have_are_all_read(reader: SentenceReader, n: int,
     assert [said.split()[0] for said in _words(found)] == [said.split()[0] for said in GESTURES[:n]]
 
 
-@pytest.mark.parametrize("n", [1, 5])
+@pytest.mark.parametrize("n", [1, 5, 14])
 def test_more_are_refused_with_their_number(reader: SentenceReader, n: int) -> None:
     found = reader.read(", ".join([*GESTURES, *GESTURES[:n]]))
     assert not found.steps and found.too_many == MOST_STEPS + n

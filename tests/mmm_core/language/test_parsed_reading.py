@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from mmm_core.language.commands import PlainCommand, Reading
+from mmm_core.language.commands import MOST_STEPS, PlainCommand, Reading
 from mmm_core.language.gesture_steps import ANY_ARM, BOTH, LEFT, RIGHT, ArmGesture
 from mmm_core.language.manner import Manner
 from mmm_core.language.parsed_reading import denies_itself, keeps_denials, reading_in, steps_asked
@@ -98,7 +98,7 @@ def test_beside_an_unknown_denial_the_parser_is_believed_if_sure(
 def test_what_nobody_could_do_is_no_reading() -> None:
     nod = ArmGesture(ANY_ARM, "nod")
     assert reading_in(((nod,) * 4,), "text", [READ], MEANT) is None
-    assert reading_in(((nod,),) * 9, "text", [READ], MEANT) is None
+    assert reading_in(((nod,),) * (MOST_STEPS + 1), "text", [READ], MEANT) is None
     assert reading_in(((ArmGesture(BOTH, "raise"),),), "text", [READ], MEANT) is None
 
 
