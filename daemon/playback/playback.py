@@ -282,9 +282,8 @@ class Playback:
         except NotPlayableError as error:
             self._give_up(player, error.event)
         except RetargetError as error:
-            self._give_up(
-                player, failed("retarget", str(error), "a motion that fits the robot", "say it in other words")
-            )
+            event = failed("retarget", str(error), "a motion that fits the robot", "say it in other words")
+            self._give_up(player, event)
         except Exception as error:
             self._give_up(player, failed("internal", str(error), "", "see the daemon's log"))
             raise

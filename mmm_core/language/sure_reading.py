@@ -67,8 +67,8 @@ def needs_tags(reading: Reading) -> bool:
 
     A sentence that denies something beside a command needs tags as well, since the command may be only a reason: "no carrying,
     you'll drop it". Of 3,205 sentences by seven writers, networks mend 12 such that the rules read surely, and spoil 3.
-    Words that may say a manner are in a command that is no phrase of the corpus, or in a comparison that was left out. Of more
-    than four commands the networks would leave some out, so that they read none of which the rules are sure.
+    Words that may say a manner are in a command that is no phrase of the corpus, or in a comparison that was left out. The
+    networks would leave out some of more than four commands, so the rules alone read such a sentence if they are sure of it.
     """
     commands = [BESIDE.sub("", command.text.lower()) for step in reading.steps for command in step]
     if len(commands) == 1 and _IS_CAPTION.match(commands[0]):

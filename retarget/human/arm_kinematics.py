@@ -36,8 +36,9 @@ class ArmKinematics:
         self._upper_m, self._beside_m = np.stack([c.upper_m for c in chains]), np.stack([c.beside_m for c in chains])
         self.upper0, self.fore0 = unit(self._upper_m), unit(np.stack([c.fore_m for c in chains]))
         bones = np.stack([self.fore0, self.upper0 if one.has_elbow else self.fore0], 1)
-        # What the joints turn, in the zero pose: forearm, upper arm, axes from the last joint to the first. Where axes miss the
-        # shoulder, each shoulder joint has before its axis what its lever to the elbow has beyond that of the joint after it.
+        # The vectors that the joints turn, in the zero pose: forearm, upper arm, and the axes from the last joint to the first.
+        # Where axes miss the shoulder, a vector stands before the axis of each shoulder joint: it leads from that joint to the
+        # next one, and from the last shoulder joint to the elbow. Sums of these vectors are the joints' levers.
         columns, n = np.concatenate([bones, self.axes[:, ::-1]], 1), self._n_shoulder
         if self._has_offsets:
             places = np.concatenate([self._beside_m[:, :n], self._upper_m[:, None]], 1)

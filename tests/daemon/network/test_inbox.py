@@ -38,7 +38,7 @@ async def _taken(address: str, sent: list[list[bytes]], most: int) -> list[list[
 
 @pytest.mark.parametrize("n", [1, 15, 16, 17, 33, 600])
 def test_none_is_lost_where_a_portion_ends(tmp_path: Path, n: int) -> None:
-    """Of 257 targets that waited the last one, and the only one that counts, was lost; so was a subscription of 2,048."""
+    """The 257th of the waiting targets was lost, and the 2,048th of the waiting subscriptions."""
     sent = [[b"%d" % k] for k in range(n)]
     portions = asyncio.run(asyncio.wait_for(_taken(f"ipc://{tmp_path}/in", sent, 16), 20))
     assert [one for portion in portions for one in portion] == [parts[0] for parts in sent]

@@ -220,7 +220,7 @@ def test_a_gaze_turns_the_head_of_the_motion_and_of_the_held_pose():
 
 
 def test_a_gaze_set_as_a_motion_ends_takes_no_command_away():
-    """It waited until the robot had stopped, and then took the place of the next motion, which had begun and now never ended."""
+    """The gaze waited for the robot to stop. Then it replaced the next motion, which had just begun, and no event ended it."""
     with front_rig() as front:
 
         async def work() -> None:
