@@ -19,7 +19,8 @@ _AIM_M = 0.002
 """Metres beyond the margin to which a pose is pushed out, a reserve for corners that velocity and acceleration limits cut."""
 _PUSHED_ON_M = 0.004
 """Metres beyond the margin to which a touching path is pushed."""
-_PUSHES, _FEW_PUSHES = 6, 4
+_PUSHES, _FEW_PUSHES, _STEP_PUSHES = 6, 4, 3
+"""Largest number of pushes of a pose: all the way out, most of the way, and after each step towards it."""
 _MOST_PUSHED_RAD = 0.15
 _COME_STEPS = 5
 """Number of steps in which a pose that pushes cannot free is approached from a clear pose."""
@@ -112,7 +113,7 @@ class Avoidance:
         going = np.arange(len(q))
         for _ in range(_COME_STEPS):
             step = np.minimum(np.maximum(wanted_rad[going] - q[going], -_MOST_PUSHED_RAD), _MOST_PUSHED_RAD)
-            ahead, clear = self._pushed_out(q[going] + step, _AIM_M, least.part(going))
+            ahead, clear = self._pushed_out(q[going] + step, _AIM_M, least.part(going), _STEP_PUSHES)
             # A clear pose whose step ends in a contact stays, and so would each further step.
             nearer = clear | ~free[going]
             going = going[nearer]

@@ -1,8 +1,8 @@
 """Plans one block of a long motion as a path inside every limit, without self-contact, with free braking at its end.
 
 Poses in contact are pushed out of contact, the limiter turns them into a path, and near contacts `refining` improves the path with
-the distances among its bounds. A path that still touches is pushed, then drawn towards the rest pose, then stopped. A path that
-this frees is improved too.
+the distances among its bounds. A path that still touches is pushed. If that frees it not soon, the program begins once more, from
+arms that stand still; if that finds no path either, it is drawn towards the rest pose, then stopped. A freed path is improved too.
 """
 
 from __future__ import annotations
@@ -39,6 +39,9 @@ _ENOUGH = 0.005
 """Such an increase below which the first path without contact is taken; after a larger one the program goes on."""
 _ANOTHER_RAD = 0.03
 """Radians by which an angle must be pushed further for the program to begin with these poses as well."""
+_PUSHED_FIRST = 2
+"""Attempts to push a path out of contact before the program begins from arms that stand still, which are free of contact: it moves
+them towards the poses as far as distances allow. Arms deep in the body are pushed for long without becoming free."""
 _AROUND_CUT = 3
 """Frames on both sides of the end of a block that change where braking from this end touches."""
 
@@ -140,7 +143,11 @@ class BlockPlanner:
     ) -> tuple[Array, int]:
         """A path without contact, from a path that touches in `hit`, and the number of interventions."""
         interventions = 0
-        for strength in STRENGTHS:
+        for attempt, strength in enumerate(STRENGTHS):
+            if attempt == _PUSHED_FIRST:
+                better = self._refined(task, self._still(task, path), least, is_free=True)
+                if better is not None:
+                    return better[0], interventions
             interventions += stretches(hit)
             eased = self._avoidance.push(eased, path, hits_of_frames(hit, len(path)), strength)
             path, hit, least = self._limited(task, eased, least)
@@ -156,6 +163,12 @@ class BlockPlanner:
             return self._stop_before_contact(path, hit, task.period, task.allowed), interventions
         better = self._refined(task, path, least, is_free=True)
         return (better[0] if better is not None and better[1] < 0 else path), interventions
+
+    def _still(self, task: _Task, path: Array) -> Array:
+        """The path, but with arms that brake at once and then hold."""
+        still = path.copy()
+        still[:, self._arms] = held(path[:2], task.period, len(path), self._limits)[: len(path), self._arms]
+        return still
 
     def _nearest(self, task: _Task, found: list[Array]) -> Array:
         """The path whose arms are nearest to the poses."""
