@@ -24,6 +24,7 @@ from retarget.human.arm_kinematics import ArmKinematics
 from retarget.human.bones import poses_last, weighted
 from retarget.human.branches import UNSEEN, fill_unseen
 from retarget.human.subproblems import Reach, Turn, angle_about, frame, unit
+from retarget.path.limits import within
 from retarget.robot.kinematics import cross, skew
 
 Array = NDArray[np.float64]
@@ -88,7 +89,7 @@ class Arms(ArmKinematics):
         self, solutions: Array, upper: Array, fore: Array, observability: Array, weights: Array | None = None
     ) -> Array:
         """(G, M, C) cost of each solution by itself, in radians of movement: angles outside limits and direction errors."""
-        outside = np.abs(solutions - np.minimum(np.maximum(solutions, self.low[:, None]), self.high[:, None]))
+        outside = np.abs(solutions - within(solutions, self.low[:, None], self.high[:, None]))
         cost = _LIMIT_COST * np.einsum("gmcn,gmcn->gmc", outside, observability)
         if not self.reaches_all or self._has_offsets:
             found = self.directions(solutions.reshape(len(solutions), -1, self.n_joints))
@@ -107,7 +108,7 @@ class Arms(ArmKinematics):
 
     def within_limits(self, q: Array, upper: Array, fore: Array, weights: Array | None = None) -> Array:
         """(G, M, n) angles within the limits; where one joint is clipped, the other joints compensate as far as they can."""
-        inside = np.minimum(np.maximum(q, self.low), self.high)
+        inside = within(q, self.low, self.high)
         cut = (inside != q).any((0, 2))
         if cut.any():
             of = None if weights is None else weights[:, cut]
@@ -224,7 +225,7 @@ class Arms(ArmKinematics):
         """Gauss-Newton steps on both direction errors from angles (G, M, C, n), clipped to the limits."""
         G, M, C, n = solutions.shape
         q = poses_last(self._nearest_turn(solutions).reshape(G, M * C, n))
-        q = np.minimum(np.maximum(q, self.low), self.high)
+        q = within(q, self.low, self.high)
         upper, fore = (poses_last(np.repeat(d, C, 1)) for d in (upper, fore))
         of = None if weights is None else poses_last(np.repeat(weights, C, 1))
         damping = _DAMPING * np.eye(n)
@@ -235,9 +236,9 @@ class Arms(ArmKinematics):
             stuck = ((q <= self.low) & (fall < 0)) | ((q >= self.high) & (fall > 0))
             free = 1.0 - stuck
             normal = b.hessian(of) * (free[..., None] * free[..., None, :]) + damping
-            step = np.linalg.solve(normal, (free * fall)[..., None])[..., 0]
-            q = q + np.minimum(np.maximum(step, -_LARGEST_STEP_RAD), _LARGEST_STEP_RAD)
-            q = np.minimum(np.maximum(q, self.low), self.high)
+            step: Array = np.linalg.solve(normal, (free * fall)[..., None])[..., 0]
+            q = q + within(step, -_LARGEST_STEP_RAD, _LARGEST_STEP_RAD)
+            q = within(q, self.low, self.high)
             if step.size and np.abs(step).max() < _DONE_RAD:
                 break
         return q.reshape(G, M, C, n)

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from retarget.human.human import SIDES, HumanMotion
 from retarget.path.collision import SelfContact
-from retarget.path.limits import JointLimits
+from retarget.path.limits import JointLimits, within
 from retarget.robot.kinematics import Kinematics
 
 Array = NDArray[np.float64]
@@ -111,8 +111,8 @@ class Hands:
                 too_far = np.where(human.share[key] > 0, np.maximum(gap - aim[key], 0.0), 0.0)[:, None]
                 way = way * self._mobility
                 step = -too_far * way / ((way * way).sum(1, keepdims=True) + _DAMPING)
-                step = np.minimum(np.maximum(step, -_LARGEST_STEP_RAD), _LARGEST_STEP_RAD)
-                q = np.minimum(np.maximum(q + step, self._low), self._high)
+                step = within(step, -_LARGEST_STEP_RAD, _LARGEST_STEP_RAD)
+                q = within(q + step, self._low, self._high)
         return q
 
     def apart_m(self, q_rad: Array) -> float:

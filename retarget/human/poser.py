@@ -113,7 +113,7 @@ class Poser:
         if self._trunk.has_waist:
             self._trunk.solve_waist(human.chest_rotation, q)
             outside |= (q < low) | (q > high)
-            q = np.minimum(np.maximum(q, low), high)
+            q = within(q, low, high)
         self._trunk.solve_neck(human.head_rotation, q)
         upper, fore = human.upper, human.fore
         if self._arms_follow == "world":
@@ -126,7 +126,7 @@ class Poser:
         for i, joint, sense in self._twists:
             q[:, joint] = sense * human.forearm_twist_rad[i]
         outside |= (q < low) | (q > high)
-        return Poses(np.minimum(np.maximum(q, low), high), outside, upper, fore, weights)
+        return Poses(within(q, low, high), outside, upper, fore, weights)
 
     def _weights(self, human: HumanPose) -> Array:
         """(2, T, 2, 2) weights of upper arm and forearm; the identity for arms that reach every pair of directions."""
@@ -201,7 +201,7 @@ class Poser:
                 if k:  # the others compensate for a clipped joint
                     x = arms.within_limits(x, upper, fore, weights)
                 else:
-                    x = np.minimum(np.maximum(x, arms.low), arms.high)
+                    x = within(x, arms.low, arms.high)
             return x, cut
         bones = arms.bones(closed)
         shown = bones.upper, bones.fore

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from retarget.path.collision import SelfContact
 from retarget.path.least_distances import LeastDistances
-from retarget.path.limits import JointLimits
+from retarget.path.limits import JointLimits, within
 from retarget.robot.robot import RobotModel
 
 Array = NDArray[np.float64]
@@ -95,7 +95,7 @@ class Avoidance:
                 near[to] = np.maximum(near[to], share * touched[of, None])
         changed = eased_rad + spread
         changed = changed + strength * near * (self._rest_rad - changed)
-        return np.clip(changed, self._low, self._high)
+        return within(changed, self._low, self._high)
 
     def _from_between(self, wanted_rad: Array, between_rad: Array, least: LeastDistances) -> Array:
         """Poses (n, J) near the wanted ones: interpolates head and waist between clear poses; if that fails, all joints.
@@ -112,7 +112,7 @@ class Avoidance:
         q, free = self._pushed_out(from_rad, _AIM_M, least)
         going = np.arange(len(q))
         for _ in range(_COME_STEPS):
-            step = np.minimum(np.maximum(wanted_rad[going] - q[going], -_MOST_PUSHED_RAD), _MOST_PUSHED_RAD)
+            step = within(wanted_rad[going] - q[going], -_MOST_PUSHED_RAD, _MOST_PUSHED_RAD)
             ahead, clear = self._pushed_out(q[going] + step, _AIM_M, least.part(going), _STEP_PUSHES)
             # A clear pose whose step ends in a contact stays, and so would each further step.
             nearer = clear | ~free[going]
@@ -146,8 +146,8 @@ class Avoidance:
             way = way * self._mobility
             along = (yielding[rows] @ way[..., None])[..., 0]
             push = lack * along / (np.vecdot(way, along)[:, None] + _DAMPING)
-            push = np.minimum(np.maximum(push, -_MOST_PUSHED_RAD), _MOST_PUSHED_RAD)
-            q[rows] = np.minimum(np.maximum(q[rows] + push, self._low), self._high)
+            push = within(push, -_MOST_PUSHED_RAD, _MOST_PUSHED_RAD)
+            q[rows] = within(q[rows] + push, self._low, self._high)
         return q, free
 
 

@@ -85,7 +85,7 @@ def limit_path(
     `settled_rad` is not linearised again.
     """
     T, J = reference_rad.shape
-    path = np.minimum(np.maximum(reference_rad, limits.position_min_rad), limits.position_max_rad)
+    path = within(reference_rad, limits.position_min_rad, limits.position_max_rad)
     follows = kept(path, position_rad, velocity_rad_s, limits, period_s)
     if follows.all():
         return path
