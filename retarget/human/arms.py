@@ -236,8 +236,8 @@ class Arms(ArmKinematics):
             stuck = ((q <= self.low) & (fall < 0)) | ((q >= self.high) & (fall > 0))
             free = 1.0 - stuck
             normal = b.hessian(of) * (free[..., None] * free[..., None, :]) + damping
-            step: Array = np.linalg.solve(normal, (free * fall)[..., None])[..., 0]
-            q = q + within(step, -_LARGEST_STEP_RAD, _LARGEST_STEP_RAD)
+            step = np.linalg.solve(normal, (free * fall)[..., None])[..., 0]
+            q = q + np.minimum(np.maximum(step, -_LARGEST_STEP_RAD), _LARGEST_STEP_RAD)
             q = within(q, self.low, self.high)
             if step.size and np.abs(step).max() < _DONE_RAD:
                 break
