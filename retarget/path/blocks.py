@@ -1,8 +1,9 @@
 """Plans one block of a long motion as a path inside every limit, without self-contact, with free braking at its end.
 
 Poses in contact are pushed out of contact, the limiter turns them into a path, and near contacts `refining` improves the path with
-the distances among its bounds. A path that still touches is pushed. If that frees it not soon, the program begins once more, from
-arms that stand still; if that finds no path either, it is drawn towards the rest pose, then stopped. A freed path is improved too.
+the distances among its bounds. A path that still touches is pushed. If that does not free it soon, the program begins once more,
+from arms that stand still; where it finds no path from there, the path is drawn towards the rest pose, then stopped. A path that
+becomes free is improved too.
 """
 
 from __future__ import annotations
