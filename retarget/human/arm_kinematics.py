@@ -37,8 +37,8 @@ class ArmKinematics:
         self.upper0, self.fore0 = unit(self._upper_m), unit(np.stack([c.fore_m for c in chains]))
         bones = np.stack([self.fore0, self.upper0 if one.has_elbow else self.fore0], 1)
         # The vectors that the joints turn, in the zero pose: forearm, upper arm, and the axes from the last joint to the first.
-        # Where axes miss the shoulder, a vector stands before the axis of each shoulder joint: it leads from that joint to the
-        # next one, and from the last shoulder joint to the elbow. Sums of these vectors are the joints' levers.
+        # Where axes miss the shoulder, each shoulder joint adds a vector in front of its axis. This vector leads to the next
+        # shoulder joint; that of the last one leads to the elbow. Sums of these vectors are the joints' levers.
         columns, n = np.concatenate([bones, self.axes[:, ::-1]], 1), self._n_shoulder
         if self._has_offsets:
             places = np.concatenate([self._beside_m[:, :n], self._upper_m[:, None]], 1)

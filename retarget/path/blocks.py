@@ -166,7 +166,7 @@ class BlockPlanner:
         return (better[0] if better is not None and better[1] < 0 else path), interventions
 
     def _still(self, task: _Task, path: Array) -> Array:
-        """The path, but with arms that brake at once and then hold."""
+        """The path, but with arms that brake at once and then hold; head and waist go on, and may bring a contact."""
         still = path.copy()
         still[:, self._arms] = held(path[:2], task.period, len(path), self._limits)[: len(path), self._arms]
         return still
@@ -185,7 +185,7 @@ class BlockPlanner:
     ) -> tuple[Array, float] | None:
         """A path without contact near the limiter's `path`, and the increase of a frame's cost; None if none was found.
 
-        With `is_free` that path is without contact itself, and of the free paths near it the best is found.
+        With `is_free` that path is without contact itself, or nearly so, and of the free paths near it the best is found.
         """
         if not (task.shown and self._refiner):
             return None

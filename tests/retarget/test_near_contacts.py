@@ -113,8 +113,8 @@ def test_a_gesture_near_the_body_is_shown(robot: str, name: str, most_deg: float
     assert path.report.direction_mean_deg < most_deg
 
 
-@pytest.mark.parametrize("seed", few_and_long([7], [2, 3, 5]))
-def test_arms_that_cross_before_the_body_are_shown(seed: int) -> None:
-    """They were pushed apart, then drawn to the rest pose: 19, 7, 15 and 20 degrees of error for 5, 4, 6 and 10."""
+@pytest.mark.parametrize(("seed", "most_deg"), few_and_long([(7, 6.5)], [(2, 6.5), (3, 6.5), (5, 12.0)]))
+def test_arms_that_cross_before_the_body_are_shown(seed: int, most_deg: float) -> None:
+    """The mean direction error was 19, 7, 15 and 20 degrees: pushes freed no arm, and all were drawn to the rest pose."""
     path = Retargeter(load_robot("reachy_2021"), keep_contacts=True).retarget(gesture("cross_hands_x", seed=seed))
-    assert path.report.direction_mean_deg < (12.0 if seed == 5 else 6.5)
+    assert path.report.direction_mean_deg < most_deg
