@@ -101,8 +101,8 @@ class Play(Command, kw_only=True):
         tempo: factor of the motion's speed, as far as the servos can follow.
         amplitude: factor of every deviation from standing.
         mirror: whether left and right are exchanged.
-        repeat: number of repetitions of the part that can loop, else of the whole motion.
-        loop: whether the motion repeats until a stop or another command.
+        repeat: number of times that the whole motion is played.
+        loop: whether the part of the motion that can loop, else the whole, repeats until a stop or another command.
         hold: whether the motion stops in its most telling pose and stays there.
     """
 

@@ -18,6 +18,7 @@ from torch import Tensor
 from mmm_core.generate.at_once import StepIds, arms_of, composed, features_of, mirrored_ids
 from mmm_core.generate.interpretation import ReadCommand, interpret
 from mmm_core.generate.kept_sizes import with_kept_sizes
+from mmm_core.generate.lasting_strokes import with_lasting_strokes
 from mmm_core.generate.motion_model import MotionModel
 from mmm_core.generate.repeated_strokes import expected_tokens, repeated, with_few_strokes
 from mmm_core.generate.result import GenerationResult, StageTimer, no_motion, understood_as
@@ -62,6 +63,9 @@ class MotionGeneration:
             self._read = interpret(engine, text)
             self._text = self._read.reading.text
             steps, self._repetitions = list(self._read.steps), [None] * len(self._read.steps)
+            if n_frames is None and engine.model.is_ours:
+                steps = with_lasting_strokes(engine, steps)
+            self._steps_in_full = steps
             if n_frames is None and engine.model.is_ours:
                 steps, self._repetitions = with_few_strokes(engine, steps)
             self._steps = steps_of(engine, steps, n_frames) if steps else []
@@ -188,7 +192,7 @@ class MotionGeneration:
 
     def _as_said(self, i: int, seed: int) -> Tensor:
         """(L, C) ids of a step of one command whose strokes cannot be repeated: the model makes as many as it can."""
-        command = self._read.steps[i][0]
+        command = self._steps_in_full[i][0]
         row = empty_row(
             self._engine.model.transformer, tokens_for_frames(self._engine.predicted_frames(command.states))
         )

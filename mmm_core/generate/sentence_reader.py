@@ -55,6 +55,7 @@ from mmm_core.language.said_arm import with_said_arm, without_denied_arm
 from mmm_core.language.said_at_once import said_at_once, without_repeats
 from mmm_core.language.sides_said import contradicts_sides
 from mmm_core.language.spelling import mended
+from mmm_core.language.stop_words import before_a_stop
 from mmm_core.language.sure_reading import is_sure, needs_networks, needs_tags, unknown_commands
 from mmm_core.language.tagged_manner import manner_phrases, with_left_manner, with_likely_manner, with_plain_manner
 from mmm_core.language.tagged_reading import can_be_read, reading_of, without_splits
@@ -149,7 +150,7 @@ class SentenceReader:
 
     def _ways(self, text: str, words: str, states: Encoded) -> Ways | None:
         """The ways to read the words of a text: by the rules, by tags and by the parser, also with its manner in plain words."""
-        by_rules = read(words)
+        by_rules = within_counts(read(words))
         is_denial = not by_rules.steps and surely_denies(words)
         if is_denial or not needs_tags(by_rules) or (not by_rules.denied and is_likely_outside(states.meant)):
             return None
@@ -164,7 +165,7 @@ class SentenceReader:
             found = [one for one in found if one.reading.denied]
         if alternates(by_rules):  # tags take the arms of one command for commands
             found = [one for one in found if one.by_rules]
-        readings = [replace(one.reading, text=text) for one in found]
+        readings = [within_counts(replace(one.reading, text=text)) for one in found]
         self._models.classes(
             list(dict.fromkeys(chain.from_iterable(map(unknown_commands, readings))))
         )  # all in one pass
@@ -240,7 +241,7 @@ class SentenceReader:
                 divisions.setdefault(marked, log)
         meant = states.classes(list(divisions))
         best = max(divisions.values(), default=0.0)
-        by_rules = read(words)
+        by_rules = within_counts(read(words))
         found = [Candidate(by_rules, by_rules=True, sure_rules=is_sure(by_rules))]
         for (marked, log), means in zip(divisions.items(), meant, strict=True):
             reading = reading_of(words, marked, means)
@@ -275,10 +276,11 @@ def _of_tags(states: Encoded) -> dict[str, float]:
 
 
 def _in_order(words: str) -> str:
-    """A sentence whose clauses stand in the order in which they are to be done, without acts that are set aside or taken back.
+    """A sentence with its clauses in order, without acts that are set aside or taken back and without a stop at its end.
 
     The networks hardly know to find these.
     """
+    words = before_a_stop(words)
     lower, said = words.lower(), mended(words)
     ordered = in_said_order(contrasted(said))
     return words if ordered == said and with_meant_command(lower) == lower else ordered

@@ -1,6 +1,6 @@
 """Plain commands, the reading of a sentence, and a notation for commands that is read verbatim.
 
-`exactly: wave your right hand (0.62 times as fast) + nod; bow (held for 2 s)` has two steps, the first of two commands at once.
+`exactly: wave your right hand (0.62 times as fast) + nod; bow (for 2 s)` has two steps, the first of two commands at once.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ MOST_STEPS, MOST_AT_ONCE = 16, 3
 _MARKS = re.compile(r"[();+]")
 _COMMAND = re.compile(r"(?P<text>[^()]*?[a-z][^()]*?)\s*(?:\((?P<manner>[^()]*)\))?", re.IGNORECASE)
 _SAID = re.compile(
-    r"(?:(?P<tempo>N) times as fast|(?P<size>N) times as large|held for (?P<hold>N) s|"
+    r"(?:(?P<tempo>N) times as fast|(?P<size>N) times as large|for (?P<hold>N) s|"
     rf"in a (?P<mood>{'|'.join(MOODS)}) mood)".replace("N", r"\d{1,3}(?:\.\d{1,3})?"))  # fmt: skip
 
 
@@ -40,11 +40,11 @@ class PlainCommand:
 
     @property
     def sentence(self) -> str:
-        """Words and manner of the command: "bow (0.55 times as fast, held for 2 s)"."""
+        """Words and manner of the command: "bow (0.55 times as fast, for 2 s)"."""
         manner = self.manner
         said = [f"{manner.tempo:.2g} times as fast"] if manner.tempo != 1.0 else []
         said += [f"{manner.size:.2g} times as large"] if manner.size != 1.0 else []
-        said += [f"held for {manner.hold_s:g} s"] if manner.hold_s else []
+        said += [f"for {manner.hold_s:g} s"] if manner.hold_s else []
         said += [f"in a {manner.mood} mood"] if manner.mood else []
         return f"{self.text} ({', '.join(said)})" if said else self.text
 

@@ -26,6 +26,7 @@ from mmm_core.language.commands import Reading, Steps
 from mmm_core.language.corrections import corrected
 from mmm_core.language.count_words import ADVERBS, NUMBERS
 from mmm_core.language.ellipsis import completed
+from mmm_core.language.multiples import multiple_in
 from mmm_core.language.reading import read
 from mmm_core.language.requests import everyday
 from mmm_core.language.spelling import mended
@@ -125,6 +126,13 @@ def _actions(said: str) -> list[Action] | None:
     found: list[Action] = []
     at = 0
     while at < len(said):
+        multiple = multiple_in(said, at)
+        if multiple is not None and multiple.start == at:
+            found.append(
+                Action(*("tempo", str(multiple.tempo)) if multiple.tempo != 1 else ("size", str(multiple.size)))
+            )
+            at = _end_of_gap(said, multiple.end)
+            continue
         matches = [(m, action) for pattern, action in _patterns() if (m := pattern.match(said, at))]
         if not matches:
             return None
@@ -133,9 +141,13 @@ def _actions(said: str) -> list[Action] | None:
             return None
         if action != "nothing":
             found.append(_action(action, best))
-        gap = _BETWEEN.match(said, best.end())
-        at = gap.end() if gap else best.end()
+        at = _end_of_gap(said, best.end())
     return found or None
+
+
+def _end_of_gap(said: str, at: int) -> int:
+    gap = _BETWEEN.match(said, at)
+    return gap.end() if gap else at
 
 
 def _action(action: str, found: re.Match[str]) -> Action:

@@ -1,4 +1,7 @@
-"""Numbers of times that no motion can have: more than thirty become thirty, and what is asked for zero times is left out."""
+"""Numbers of times that no motion can have.
+
+More than thirty become thirty, "3.5 times" becomes three, and what is asked for zero times is left out.
+"""
 
 from __future__ import annotations
 
@@ -7,7 +10,7 @@ from dataclasses import replace
 
 from mmm_core.language.commands import PlainCommand, Reading
 from mmm_core.language.count_words import MOST, NUMBERS, count_asked
-from mmm_core.language.limbs import limbs_of
+from mmm_core.language.limbs import is_gesture_verb, limbs_of
 
 _UNIT = r"(?:one|two|three|four|five|six|seven|eight|nine)"
 _TENS = r"(?:forty|fifty|sixty|seventy|eighty|ninety)"
@@ -18,12 +21,21 @@ _LARGE = re.compile(
     re.IGNORECASE,
 )
 _ZERO = re.compile(r"\b(?:(?:zero|0|no) times|0x|x0)\b", re.IGNORECASE)
+_BROKEN = re.compile(
+    rf"\b(?P<whole>\d+)\.\d+(?P<times> ?(?:times|x)\b)|"
+    rf"\b(?P<word>{'|'.join(word for word in NUMBERS if word.isalpha())}) and a half(?P<times_of_word> times)\b",
+    re.IGNORECASE,
+)
+"""A number of times that is not whole: "3.5 times", "two and a half times"."""
+_TIMES = re.compile(r" ?(?:times|x)\b", re.IGNORECASE)
+_MOST_BEFORE_STROKES = 3
+"""Words after a number among which its strokes are, at most: "fifty quick head shakes"."""
 _X_BEFORE = re.compile(r"\bx(\d{2,})\b", re.IGNORECASE)
 """A number of times as in "wave x100"."""
 
 
 def within_counts(reading: Reading) -> Reading:
-    """A reading whose commands name at most thirty times, without those that are to be done zero times.
+    """A reading whose commands name whole numbers of times, thirty at most, without those that are to be done zero times.
 
     `notes` says what was changed, `denied` names what is left out.
     """
@@ -42,11 +54,16 @@ def _limited(command: PlainCommand, denied: list[str], notes: list[str]) -> Plai
     if zero := _ZERO.search(command.text):
         denied.append(" ".join((command.text[: zero.start()] + command.text[zero.end() :]).split()))
         return None
-    many = _too_many(command.text)
-    if many is None:
+    if broken := _BROKEN.search(command.text):
+        number = broken["word"] or max(int(broken["whole"]), 1)
+        whole = f"{number}{broken['times'] or broken['times_of_word']}"
+        text = f"{command.text[: broken.start()]}{whole}{command.text[broken.end() :]}"
+        notes.append(f"'{broken[0]}' is no whole number: '{text}'")
+    elif many := _too_many(command.text):
+        said, text = many
+        notes.append(f"'{said}' is more than the most, {MOST}: '{text}'")
+    else:
         return command
-    said, text = many
-    notes.append(f"'{said}' is more than the most, {MOST}: '{text}'")
     return replace(command, text=text, limbs=limbs_of(text))
 
 
@@ -60,6 +77,13 @@ def _too_many(command: str) -> tuple[str, str] | None:
     for number in _LARGE.finditer(text):
         figures = number[0].replace(",", "")
         thirty = f"{text[: number.start()]}{MOST}{text[number.end() :]}"
-        if not (figures.isdigit() and int(figures) <= MOST) and count_asked(thirty) == MOST:
+        is_small = figures.isdigit() and int(figures) <= MOST
+        if not is_small and count_asked(thirty) == MOST and _counts_strokes(text[number.end() :]):
             return number[0], thirty
     return None
+
+
+def _counts_strokes(after: str) -> bool:
+    """Whether a number with these words after it counts strokes: "times", "big nods", but not "singers"."""
+    words = after.lower().split()[:_MOST_BEFORE_STROKES]
+    return bool(_TIMES.match(after)) or any(is_gesture_verb(word[:-1]) or is_gesture_verb(word[:-2]) for word in words)

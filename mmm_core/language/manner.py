@@ -8,6 +8,7 @@ from functools import cache
 
 from mmm_core.language.count_words import NUMBERS
 from mmm_core.language.moods import MOODS, mood_of
+from mmm_core.language.multiples import multiples_in
 from mmm_core.language.word_tables import RuleTable, lines
 
 STRONGER = 1.25
@@ -31,11 +32,12 @@ _SECONDS = {**NUMBERS, "a": 1, "a couple of": 2, "a few": 3, "several": 4, "half
 _NUMBER = (
     r"(a couple of|a few|several|half a|a|\d+(?:\.\d+)?|" + "|".join(word for word in NUMBERS if word.isalpha()) + ")"
 )
+_LASTING = rf"{_NUMBER}(?: full| whole| more)? (?:seconds?|secs?|s|(?:(?<=half a )|(?<!\ba ))(?:minutes?|mins?))\b"
 _HOLD = re.compile(
     r",?\s*(?:\b(?:and |then )?(?:holds?|holding|keeps?|keeping|stays?|staying|remains?|freezes?|waits?|waiting|rests?|leaves?|pauses?)"
     r"(?: (?:it|them|that|this|there|still|so|like (?:that|this)|the (?:pose|position)|your (?:pose|position)|that (?:pose|position)|up|down|in place|"
     r"(?:your|the) (?:left |right )?(?:hand|arm|head)s?))*\s+)?"
-    rf"(?:(?:for|about|exactly|at least|around|nearly|almost|all of|(?:a|the) (?:full|good|whole|solid)|another) )*(?<!\bin )(?<!\bwithin )(?<!\bafter )(?<!\bevery ){_NUMBER}(?: full| whole| more)? (?:seconds?|secs?|s)\b(?: long| straight)?"
+    rf"(?:(?:for|about|exactly|at least|around|nearly|almost|all of|(?:a|the) (?:full|good|whole|solid)|another) )*(?<!\bin )(?<!\bwithin )(?<!\bafter )(?<!\bevery ){_LASTING}(?: long| straight)?"
 )
 _COUNT_OF = re.compile(
     r",?\s*(?:\b(?:and |then )?(?:holds?|holding|keeps?|keeping)(?: (?:it|them|that|this|there))*\s+)?"
@@ -44,9 +46,9 @@ _COUNT_OF = re.compile(
 )
 """Pattern of a hold with a counted number of seconds."""
 _ONLY_SECONDS = re.compile(
-    rf",?\s*\b(?:(?:for|about|exactly|at least|around|all of|a full) )+{_NUMBER}(?: full| whole| more)? (?:seconds?|secs?|s)\b(?: long| straight)?"
+    rf",?\s*\b(?:(?:for|about|exactly|at least|around|all of|a full) )+{_LASTING}(?: long| straight)?"
 )
-_SECOND = re.compile(r"\d ?s|sec")
+_SECOND = re.compile(r"\d ?s|sec|min")
 """Pattern that occurs in every text with a hold, for a quick test."""
 _BEFORE_MARK = re.compile(r"\s+([,.])")
 _AT_ENDS = re.compile(r"^(?:and|but)\s+|[\s,.]+(?:and|but)?[\s,.]*$|^[\s,.]+")
@@ -95,12 +97,7 @@ def manner_of(clause: str) -> tuple[str, Manner]:
     >>> manner_of("nod very slowly"), manner_of("give a tiny bow")
     (('nod', Manner(tempo=0.55..., size=1.0, hold_s=0.0, mood='')), ('give a bow', Manner(tempo=1.0, size=0.55..., hold_s=0.0, mood='')))
     """
-    rest, tempo = _factor(clause, "tempo", FASTEST)
-    rest, size = _factor(rest, "size", LARGEST)
-    rest, again = _factor(
-        rest, "tempo", FASTEST
-    )  # "a slow deep bow": the noun stands beside "slow" now; "gently and slowly"
-    tempo = max(tempo, again, key=lambda f: abs(f - 1))
+    rest, tempo, size = _factors(clause)
     rest, hold_s = _hold(rest)
     rest, mood = mood_of(rest)
     tempo = min(FASTEST, max(1 / FASTEST, tempo * MOODS[mood].tempo)) if mood else tempo
@@ -112,6 +109,22 @@ def manner_of(clause: str) -> tuple[str, Manner]:
     if not _READS.search(rest):
         return clause, Manner()
     return rest, Manner(tempo, size, hold_s, mood)
+
+
+def _factors(clause: str) -> tuple[str, float, float]:
+    """A clause without its words of tempo and size, and their factors: a multiple that it names, or what words are worth."""
+    tempo = size = 1.0
+    for multiple in reversed(multiples_in(clause)):
+        clause = f"{clause[: multiple.start]} {clause[multiple.end :]}"
+        tempo, size = tempo * multiple.tempo, size * multiple.size
+    rest, in_words = _factor(clause, "tempo", FASTEST)
+    rest, large = _factor(rest, "size", LARGEST)
+    rest, again = _factor(
+        rest, "tempo", FASTEST
+    )  # "a slow deep bow": the noun stands beside "slow" now; "gently and slowly"
+    tempo = tempo if tempo != 1 else max(in_words, again, key=lambda f: abs(f - 1))
+    size = size if size != 1 else large
+    return rest, min(FASTEST, max(1 / FASTEST, tempo)), min(LARGEST, max(1 / LARGEST, size))
 
 
 def _factor(clause: str, table: str, most: float) -> tuple[str, float]:
@@ -160,6 +173,7 @@ def _hold(clause: str) -> tuple[str, float]:
         found = _ONLY_SECONDS.search(clause) or found
     number = next(group for group in found.groups() if group)
     seconds = float(_SECONDS[number]) if number in _SECONDS else float(number)
+    seconds *= 60 if "min" in found[0] else 1
     rest = clause[: found.start()] + " " + clause[found.end() :]
     rest = _KEEPS.sub("raise ", rest) if _HIGH.search(rest) else rest
     return rest, min(seconds, LONGEST_HOLD_S)

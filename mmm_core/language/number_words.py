@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
+from itertools import accumulate
 from typing import NamedTuple
 
 from mmm_core.language.count_words import ADVERBS, NUMBERS, OF_A_LIMB
+from mmm_core.language.multiples import multiples_in
 from mmm_core.language.word_tables import LIMB
 
 _TENS = {"twenty": 20, "thirty": 30, "forty": 40, "fifty": 50, "sixty": 60, "seventy": 70, "eighty": 80, "ninety": 90}
@@ -26,6 +28,8 @@ _NAMED = re.compile(
 )
 """Nouns before a number that is their name: "table six"."""
 _LARGER = re.compile(r"hundred|thousand|million|percent|%|o['\u2019]clock|am|pm")
+_IN_FIGURES = (":", ".")
+"""Marks between the figures of a time of day and of a decimal number."""
 
 
 class NumberWord(NamedTuple):
@@ -36,16 +40,19 @@ class NumberWord(NamedTuple):
 
 
 def number_words(words: Sequence[str]) -> list[NumberWord]:
-    """The numbers among the words of a sentence, in their order, without those that surely count no strokes ("table six").
+    """The numbers among the words of a sentence, in their order, without those that surely count no strokes.
+
+    Left out are "table six", "twice as fast" and "3.5".
 
     >>> number_words("knock twice , then half a dozen claps".split())
     [NumberWord(place=1, value=2), NumberWord(place=6, value=6)]
     """
     found: list[NumberWord] = []
+    in_multiples = _in_multiples([word.lower() for word in words])
     for place, word in enumerate(map(str.lower, words)):
         figure = _FIGURE.fullmatch(word)
         value = int(figure[1]) if figure else _VALUES.get(word)
-        if not value or _is_of_something_else(words, place):
+        if not value or place in in_multiples or _is_of_something_else(words, place):
             continue
         before = [one.lower() for one in words[max(place - 2, 0) : place]]
         if word == "dozen" and "half" in before:
@@ -57,12 +64,19 @@ def number_words(words: Sequence[str]) -> list[NumberWord]:
     return found
 
 
+def _in_multiples(words: Sequence[str]) -> set[int]:
+    """Places of the words that name a multiple: "clap twice as fast"."""
+    starts = list(accumulate((len(word) + 1 for word in words), initial=0))
+    multiples = multiples_in(" ".join(words))
+    return {place for place, start in enumerate(starts[:-1]) if any(m.start <= start < m.end for m in multiples)}
+
+
 def _is_of_something_else(words: Sequence[str], place: int) -> bool:
-    """Whether a number belongs to a name, a larger number, a time of day or the limbs that are used."""
+    """Whether a number belongs to a name, a larger number, a time of day, a decimal or the limbs that are used."""
     before, number, after, then = (words[i].lower() if 0 <= i < len(words) else "" for i in range(place - 1, place + 3))
     names_strokes = not {then, f"{then}s", f"{then}es"}.isdisjoint(_OF_A_LIMB)
     names_limbs = number in ("one", "two", "1", "2") and _LIMBS.fullmatch(after) and not names_strokes
-    is_time = (after == ":" and then.isdigit()) or (
-        before == ":" and number.isdigit() and place > 1 and words[place - 2].isdigit()
+    is_in_figures = (after in _IN_FIGURES and then.isdigit()) or (
+        before in _IN_FIGURES and number.isdigit() and place > 1 and words[place - 2].isdigit()
     )
-    return bool(_NAMED.fullmatch(before) or _LARGER.fullmatch(after) or names_limbs or is_time)
+    return bool(_NAMED.fullmatch(before) or _LARGER.fullmatch(after) or names_limbs or is_in_figures)

@@ -22,6 +22,7 @@ from mmm_core.language.contrasts import contrasted
 from mmm_core.language.corrections import corrected
 from mmm_core.language.denial import Denial, names_an_act, without_denial
 from mmm_core.language.denial_patterns import SOMETHING_ELSE
+from mmm_core.language.each import each_done, without_number_of_each
 from mmm_core.language.ellipsis import completed, with_sides
 from mmm_core.language.limbs import SOME_ARM, limbs_of
 from mmm_core.language.manner import Manner, manner_of
@@ -32,7 +33,7 @@ from mmm_core.language.positions import in_said_order
 from mmm_core.language.requests import everyday, greeting, restated, rewritten, without_request
 from mmm_core.language.run_on import with_marks
 from mmm_core.language.spelling import mended, normalised
-from mmm_core.language.stop_words import after_a_stop
+from mmm_core.language.stop_words import after_a_stop, before_a_stop
 from mmm_core.language.word_tables import REMEMBERED
 
 _PAST = re.compile(r"^(?!(?:raised|stretched|crossed|folded|extended|red)\b (?:hand|arm|fist)s?\b)(?!\w*eed\b)\w+ed\b")
@@ -78,7 +79,7 @@ def read(text: str, *, by_rules_alone: bool = False) -> Reading:
         return exact
     if len(text.split(None, MOST_WORDS)) > MOST_WORDS:
         return Reading(text, ((PlainCommand(text),),), plain=True)
-    said = contrasted(after_a_stop(mended(text)))
+    said = contrasted(before_a_stop(after_a_stop(mended(text))))
     if known := everyday(said) or greeting(said):
         return _known(text, known)
     held = said if by_rules_alone else held_together(said)
@@ -102,6 +103,7 @@ def read(text: str, *, by_rules_alone: bool = False) -> Reading:
     )
     steps: list[tuple[PlainCommand, ...]] = []
     notes: list[str] = []
+    rest, times = without_number_of_each(rest)
     rest, hand = _for_all(rest)
     hand = hand or first_hand
     rest = rest if hand else with_hand_named_after(rest)
@@ -110,6 +112,7 @@ def read(text: str, *, by_rules_alone: bool = False) -> Reading:
         return Reading(text, (), too_many=len(clauses))
     for clause in clauses:
         steps += _steps(clause + hand if hand and limbs_of(clause) == SOME_ARM else clause, notes)
+    steps = each_done(steps, times)
     if _is_plain(text, said, steps):
         return Reading(text, ((replace(steps[0][0], text=normalised(text)),),), plain=True)
     if denial.denied:

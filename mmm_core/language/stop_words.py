@@ -14,7 +14,7 @@ _COURTESY = frozenset(
     """
     a ah again all alright and already at away can could dear ever everybody everyone everything for goodness heavens
     hello here hey i immediately instantly it just kindly listen minute moment must need no now of oh ok okay once
-    please pls plz quick quickly right robot said sake sec second should sir so thank thanks that the there this to told
+    please pls plz quick quickly right robot said sake sec second should sir so thank thanks that the then there this to told
     uh um want will with would you your yourself s is are re am m ll d
     """.split()
 )
@@ -73,6 +73,12 @@ _STOP_FIRST = re.compile(
     r"\W*(?P<stop>[\w' ]+?)(?:,? (?:and|then)(?: then| now)*|[,.;!]+ (?:now|then|and)) (?P<rest>\w.*)",
     re.IGNORECASE | re.DOTALL,
 )
+_NEXT = r"then|(?:right |straight )?after (?:that|this),?|afterwards,?|finally,?"
+_STOP_LAST = re.compile(
+    rf"(?<=\w)(?:[,;.]? (?:and )?(?:{_NEXT}) stop|(?:[,;.]| and|[,;.] and) stop(?= (?:there|then|after)))"
+    r"(?: there| then| after (?:that|this|it))?[.!]*$",
+    re.IGNORECASE,
+)
 _MOST_WORDS, _MOST_WORDS_OF_ACTIVITY = 14, 5
 _GOES_ON = re.compile(r"\b(and|then|but|instead|start|begin|rather|let|while|before|after|until)\b")
 
@@ -113,6 +119,15 @@ def after_a_stop(text: str) -> str:
         return text
     stays = found["rest"].strip(" .!?").lower() in _STAYS or means_stop(found["rest"])
     return text if stays else found["rest"]
+
+
+def before_a_stop(text: str) -> str:
+    """The commands before a stop at the end of a text; a text without both stays as it is. Every motion stops at its end anyway.
+
+    >>> before_a_stop("nod twice, after that stop"), before_a_stop("wave until i say stop")
+    ('nod twice', 'wave until i say stop')
+    """
+    return _STOP_LAST.sub("", text)
 
 
 def _stop_of(found: re.Match[str]) -> str:

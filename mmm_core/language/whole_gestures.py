@@ -11,7 +11,9 @@ from functools import cache
 
 from mmm_core.language.commands import PlainCommand, Reading
 from mmm_core.language.count_words import count_asked, without_times
+from mmm_core.language.known_phrases import BESIDE
 from mmm_core.language.limbs import limbs_of
+from mmm_core.language.phrase_gestures import gesture_of_phrase
 from mmm_core.language.plain_gestures import SURE, Meant, family_of, gesture_of, gestures, plain_command
 from mmm_core.language.word_tables import lines
 
@@ -25,6 +27,13 @@ def once(command: str) -> str:
     """The plain command for a whole gesture without its number: "salute" of "salute 3 times"; empty for other commands."""
     bare = without_times(command)
     return bare if bare != command and is_whole(gesture_of(bare)) else ""
+
+
+def has_strokes(command: str) -> bool:
+    """Whether a command surely repeats a stroke: a phrase of such a gesture, or its verb alone."""
+    bare = BESIDE.sub("", command.lower()).strip()
+    gesture = gesture_of(bare) or gesture_of_phrase(bare)
+    return not is_whole(gesture) if gesture else bare in _verbs_of_strokes()
 
 
 def with_plain_repetitions(reading: Reading, classes: Callable[[Sequence[str]], Mapping[str, Meant]]) -> Reading:

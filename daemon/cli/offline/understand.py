@@ -56,12 +56,13 @@ def understand(
 def _read(text: str) -> Reading:
     """The reading of a text; the networks, and PyTorch with them, are loaded where the rules do not read it alone."""
     from mmm_core.language.hard_phrases import without_hard_phrases
+    from mmm_core.language.impossible_counts import within_counts
     from mmm_core.language.reading import read
     from mmm_core.language.sure_reading import needs_networks
 
     by_rules = read(text)
     by_networks = by_rules.text == text and needs_networks(by_rules)  # a text that is read verbatim has other words
-    return _reader().read(text) if by_networks else without_hard_phrases(text, by_rules)
+    return _reader().read(text) if by_networks else without_hard_phrases(text, within_counts(by_rules))
 
 
 @cache

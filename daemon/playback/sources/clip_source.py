@@ -10,7 +10,7 @@ from daemon.poses.pose_sequence import PoseSequence, at_tempo, faded_in, joined,
 from daemon.wire.requests import Play
 
 AGAIN_FADE_FRAMES = 8
-"""Number of frames over which a motion without a loop is blended out of its own end when it is repeated."""
+"""Number of frames over which a motion is blended out of its own end when it is repeated."""
 LOOP_STRETCH_S = 1.5
 """Seconds of a segment at least: repetitions are joined to reach this length."""
 
@@ -23,10 +23,11 @@ class ClipSource(MotionSource):
     """
 
     def __init__(self, posture: PoseSequence, play: Play, marks: Marks | None = None) -> None:
-        needed = play.loop or play.hold or play.repeat > 1
+        needed = play.loop or play.hold
         self.marks = marks or (marks_of(posture) if needed else Marks(None, len(posture) - 1))
         self._posture, self._play = posture, play
-        self._rounds_left = -1 if play.loop else play.repeat - 1
+        self._goes_round = play.loop
+        self._n_left = play.repeat
         self._begun = False
 
     def next(self) -> tuple[PoseSequence, bool]:
@@ -35,54 +36,43 @@ class ClipSource(MotionSource):
 
     def finish(self) -> None:
         """Stop repeating: the next segment leads to the end."""
-        self._rounds_left = 0
+        self._goes_round, self._n_left = False, 1
 
     def _next(self) -> tuple[PoseSequence, bool]:
-        p, loop = self._posture, self.marks.loop
-        begun, self._begun = self._begun, True
-        end = self.marks.hold + 1 if self._play.hold else len(p)
-        if not self._rounds_left:
-            if not begun or loop is None:
-                return (p[:end] if not begun else self._again(end)), True
-            return self._last_rounds()
-        if loop is None:  # the whole clip is repeated, blended out of its own end
-            stretch = self._again(len(p)) if begun else p
-            self._rounds_left -= 1
-            return stretch, False
-        if not begun:
-            head = p[: loop[0]]
-            whole = joined([head, closed(p, loop)]) if len(head) else closed(p, loop)
-            return whole, False
-        rounds = self._take_rounds(loop)
-        return closed(p, loop).at(np.arange(rounds * (loop[1] - loop[0])) % (loop[1] - loop[0])), False
+        loop, begun = self.marks.loop, self._begun
+        self._begun = True
+        if self._play.loop and loop is not None:
+            if self._goes_round:
+                return (self._rounds(loop) if begun else self._first_round(loop)), False
+            if begun:
+                return self._after_rounds(loop), True
+        self._n_left -= not self._goes_round
+        last = not self._n_left
+        end = self.marks.hold + 1 if self._play.hold and last else len(self._posture)
+        return (self._again(end) if begun else self._posture[:end]), last
 
-    def _take_rounds(self, loop: tuple[int, int]) -> int:
-        wanted = max(1, round(LOOP_STRETCH_S * self._posture.fps / (loop[1] - loop[0])))
-        rounds = wanted if self._rounds_left < 0 else min(wanted, self._rounds_left)
-        if self._rounds_left > 0:
-            self._rounds_left -= rounds
-        return rounds
+    def _first_round(self, loop: tuple[int, int]) -> PoseSequence:
+        return joined([self._posture[: loop[0]], closed(self._posture, loop)])
 
-    def _last_rounds(self) -> tuple[PoseSequence, bool]:
-        loop = self.marks.loop
-        assert loop is not None, "asked only of a clip that goes round"
+    def _rounds(self, loop: tuple[int, int]) -> PoseSequence:
+        """Rounds of the part that can loop."""
+        n_frames = loop[1] - loop[0]
+        n_rounds = max(1, round(LOOP_STRETCH_S * self._posture.fps / n_frames))
+        return closed(self._posture, loop).at(np.arange(n_rounds * n_frames) % n_frames)
+
+    def _after_rounds(self, loop: tuple[int, int]) -> PoseSequence:
         tail = after_loop(self._posture, loop)
-        if self._play.hold:  # held in the loop or after it: one more repetition up to the frame to hold
-            a, b = loop
-            hold = self.marks.hold
-            tail = closed(self._posture, loop)[: hold - a + 1] if a <= hold < b else tail[: max(1, hold - b + 1)]
-        if not len(tail):
-            tail = closed(self._posture, loop)
-        return tail, True
+        return tail if len(tail) else closed(self._posture, loop)
 
     def _again(self, end: int) -> PoseSequence:
+        """The motion up to a frame, blended out of its own end."""
         p = self._posture
         return faded_in(p[:end], p[len(p) - 1 :], AGAIN_FADE_FRAMES)
 
 
 def in_full(posture: PoseSequence, play: Play, marks: Marks, longest_s: float) -> PoseSequence | None:
     """All poses of a clip with its repetitions, as `play` requires; None for an endless one or more than `longest_s` seconds."""
-    if play.loop or play.repeat * len(posture) > 4 * longest_s * posture.fps:
+    if play.loop or (play.repeat - 1) * len(posture) > longest_s * posture.fps:
         return None
     source = ClipSource(posture, play, marks)
     stretches: list[PoseSequence] = []

@@ -120,5 +120,6 @@ def out_of_scope(entry: Entry, reason: str, understood: str, score: float) -> No
 
 
 def performance_s(posture: PoseSequence, request: Command) -> float:
-    """Seconds of one performance at the requested tempo."""
-    return len(posture) / posture.fps / (request.tempo if isinstance(request, Play) else 1.0)
+    """Seconds of a performance at the requested tempo, with its repetitions; of one round where it goes round for ever."""
+    tempo, repeat = (request.tempo, request.repeat) if isinstance(request, Play) else (1.0, 1)
+    return repeat * len(posture) / posture.fps / tempo

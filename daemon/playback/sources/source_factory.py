@@ -142,7 +142,7 @@ class SourceFactory:
         check_in_scope(entry, generated)
         motion, play = generated.motion, entry.request
         assert isinstance(play, Play), "only motions are generated"
-        goes_round = play.loop or play.hold or play.repeat > 1  # a sway has another period than the strokes
+        goes_round = play.loop or play.hold  # a sway has another period than the strokes
         posture = posture_of(motion) if goes_round else self._aliveness.posture_of(motion)
         if keys:
             posture = led_through(posture, keys)

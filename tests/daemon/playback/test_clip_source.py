@@ -95,12 +95,11 @@ def test_what_follows_the_last_round_grows_out_of_it():
 
 
 @pytest.mark.parametrize("repeat", [1, 2, 3, 7])
-def test_repeats_are_counted(repeat):
-    loop = find_loop(WAVE)
+def test_the_whole_motion_is_repeated(repeat):
+    """`say bow --repeat 3` looped the part in the bent pose, so that the robot showed four bows and never stood up."""
     stretches, ended = played(ClipSource(WAVE, Say(text="wave", repeat=repeat)))
-    assert ended
-    n = sum(map(len, stretches))
-    assert n == len(WAVE) + (repeat - 1) * (loop[1] - loop[0])
+    assert ended and [len(stretch) for stretch in stretches] == [len(WAVE)] * repeat
+    assert all(distance_deg(WAVE[-1:], stretch[-1:])[0] < 0.01 for stretch in stretches)
     assert steps_deg(joined(stretches)).max() <= steps_deg(WAVE).max() * 1.3 + 1.0
 
 
@@ -112,9 +111,19 @@ def test_what_is_told_counts_the_strokes_of_all_rounds(repeat):
     stretches, _ = played(ClipSource(WAVE, play))
     assert whole is not None and len(whole) == sum(map(len, stretches))
     once, all_rounds = (seen(posture_features_of(p), "wave")[0].count for p in (WAVE, whole))
-    loop = find_loop(WAVE)
-    n_in_a_round = round((loop[1] - loop[0]) / (0.8 * FPS))
-    assert once and all_rounds == once + (repeat - 1) * n_in_a_round
+    assert once and all_rounds == repeat * once
+
+
+def test_a_repeated_motion_that_is_held_stops_in_its_last_round():
+    stretches, ended = played(ClipSource(ARM, Say(text="raise", repeat=3, hold=True)))
+    assert ended and [len(stretch) for stretch in stretches] == [len(ARM), len(ARM), find_hold(ARM) + 1]
+
+
+def test_a_repeated_motion_ends_with_its_present_round_when_it_is_finished():
+    score = ClipSource(WAVE, Say(text="wave", repeat=5))
+    assert not score.next()[1]
+    score.finish()
+    assert score.next()[1]
 
 
 def test_what_is_longer_than_one_looks_at_is_not_counted():
@@ -130,8 +139,8 @@ def posture_features_of(p: PoseSequence):
 
 def test_a_motion_without_loop_is_done_again_as_a_whole():
     p = WAVE[:40]
-    stretches, ended = played(ClipSource(p, Say(text="x", repeat=3), Marks(None, 20)))
-    assert ended and [len(s) for s in stretches] == [40] * 3
+    stretches, ended = played(ClipSource(p, Say(text="x", loop=True), Marks(None, 20)), 5)
+    assert not ended and [len(s) for s in stretches] == [40] * 5
 
 
 def test_a_loop_has_no_end_until_it_is_finished():

@@ -246,3 +246,19 @@ def test_what_the_parser_is_sure_of_is_not_taken_for_denied(reader: SentenceRead
 def test_what_is_denied_alone_stays_denied(reader: SentenceReader, text: str) -> None:
     found = reader.read(text)
     assert not found.steps and found.denied
+
+
+@pytest.mark.parametrize(
+    ("text", "sentences"),
+    [
+        ("clap three times, after that stop", ("clap three times",)),
+        ("nod 0 times and clap", ("clap",)),
+        ("wave with your right hand twice as fast, then back", ("wave your right hand (2 times as fast)",)),
+        ("wave and nod, twice as fast", ("wave your hand (2 times as fast)", "nod your head (2 times as fast)")),
+        ("wave, nod and bow twice each", ("wave your hand 2 times", "nod your head 2 times", "bow politely 2 times")),
+    ],
+)  # fmt: skip
+def test_numbers_and_ends_that_the_networks_would_read_otherwise(
+    reader: SentenceReader, text: str, sentences: tuple[str, ...]
+) -> None:
+    assert reader.read(text).sentences == sentences

@@ -26,8 +26,8 @@ from mmm_core.language.reading import read
         ("wave at them but make it quick", "wave (1.6 times as fast)"),
         ("throw your arms out as wide as they'll go", "throw your arms out (1.4 times as large)"),
         # and what these rules must leave alone
-        ("hold your right arm up for a second", "raise your right arm up (held for 1 s)"),
-        ("nod and stay so for two seconds", "nod (held for 2 s)"),
+        ("hold your right arm up for a second", "raise your right arm up (for 1 s)"),
+        ("nod and stay so for two seconds", "nod (for 2 s)"),
         ("do not wave, a nod is not enough", ""),
         ("hammer in the left hand, bang", "hammer in the left hand, bang"),
     ],

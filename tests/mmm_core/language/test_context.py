@@ -143,5 +143,5 @@ def test_a_text_that_is_not_written_exactly(text: str) -> None:
 
 
 def test_what_is_written_exactly_stays_within_its_bounds() -> None:
-    (step,) = read("exactly: wave (9 times as fast, 0.1 times as large, held for 99 s)").steps
+    (step,) = read("exactly: wave (9 times as fast, 0.1 times as large, for 99 s)").steps
     assert step[0] == PlainCommand("wave", Manner(2.0, 1 / 1.8, 30.0), frozenset({"some_arm"}))

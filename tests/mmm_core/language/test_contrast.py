@@ -175,7 +175,7 @@ def test_order(text: str, read_as: str) -> None:
     ("text", "read_as"),
     [
         ("do it gently: wave", "wave (0.62 times as fast)"), ("an exaggerated bow", "a bow (1.4 times as large)"),
-        ("hold your hand up for 5s", "raise your hand up (held for 5 s)"), ("bow a little deeper", "bow (1.2 times as large)"),
+        ("hold your hand up for 5s", "raise your hand up (for 5 s)"), ("bow a little deeper", "bow (1.2 times as large)"),
         ("clap three times slowly and twice fast", "clap three times (0.62 times as fast); clap twice (1.6 times as fast)"),
         ("punch 3 times with each hand", "punch 3 times with your right hand; punch 3 times with your left hand"),
         ("clap a dozen times", "clap twelve times"), ("clap once or twice", "clap twice"), ("nod thrice", "nod three times"),

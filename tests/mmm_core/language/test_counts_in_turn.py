@@ -41,14 +41,14 @@ from mmm_core.language.reading import Reading, read
         # once more, a stop between, a hold
         ("nod and once more", "nod; nod"), ("nod three times, wait, and once more", "nod three times; nod once"),
         ("rub your belly, stop, rub it again", "rub your belly; rub your belly"),
-        ("salute until I count to five", "salute (held for 5 s)"),
-        ("bow for a good two seconds before you straighten up", "bow (held for 2 s)"),
+        ("salute until I count to five", "salute (for 5 s)"),
+        ("bow for a good two seconds before you straighten up", "bow (for 2 s)"),
         ("nod three times and clap once", "nod three times; clap once"), ("nod nod nod", "nod three times"),
         ("two claps, a short pause, one clap", "two claps; one clap"), ("clap your hands, but only twice", "clap your hands twice"),
         ("pat your head twice and your belly three times", "pat your head twice; pat your belly three times"),
         ("twice wave with the left and once with the right", "wave twice with your left hand; wave once with your right hand"),
         ("alternate between nodding and shaking your head", "nod; shake your head"),
-        ("bow, wait two seconds, come back up", "bow (held for 2 s)"),
+        ("bow, wait two seconds, come back up", "bow (for 2 s)"),
         ("repeat this twice: raise and lower your arms", "raise and lower your arms twice"),
         # and what looks like these
         ("nod twice and clap three times at the same time", "nod twice + clap three times"), ("clap clap", "clap"),

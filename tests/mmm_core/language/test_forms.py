@@ -61,7 +61,7 @@ class TestWhatIsRead:
             ("wave with your right hand, then both", "wave with your right hand; wave with both hands"),
             ("put your right hand on your heart and, while you do that, nod", "put your right hand on your heart + nod"),
             ("nod during the clapping", "nod + clap"),
-            ("lean to the left and hold it for five seconds", "lean to the left (held for 5 s)"),
+            ("lean to the left and hold it for five seconds", "lean to the left (for 5 s)"),
             ("raise your left arm. No, not that arm, the other one.", "raise your right arm"),
             ("Raise both arms. Hmm, actually just the left.", "raise your left arm"),
             ("left, i mean right, arm up", "raise your right hand"), ("lean forward, actually no, backwards", "lean back"),
@@ -153,7 +153,7 @@ class TestOrders:
             ("cross your arms, after a beat shake your head", "cross your arms; shake your head"),
             ("before you clap, nod", "nod; clap"), ("clap and after a short pause nod", "clap; nod"),
             ("extend your right arm forward, and once it has been there for four seconds, lower it again",
-             "extend your right arm forward (held for 4 s); lower your right arm"),
+             "extend your right arm forward (for 4 s); lower your right arm"),
             ("Lean to the left, and when you're there look that way", "lean to the left; look to the left"),
         ],
     )  # fmt: skip

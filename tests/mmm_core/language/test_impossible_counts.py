@@ -33,6 +33,20 @@ def test_other_ways_to_say_a_number(text: str, words: str) -> None:
     assert within_counts(Reading(text, ((PlainCommand(text),),))).words == words
 
 
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("wave 3.5 times", "wave 3 times"),
+        ("nod 0.5 times", "nod 1 times"),
+        ("bow two and a half times", "bow two times"),
+    ],
+)
+def test_strokes_are_whole(text: str, words: str) -> None:
+    """`wave 3.5 times` was read as three waves at half tempo."""
+    reading = within_counts(read(text))
+    assert reading.words == words and "no whole number" in reading.notes[0]
+
+
 @given(st.integers(1, 30), st.sampled_from(["wave N times", "clap N times, then bow", "do N nods", "nod Nx"]))
 def test_possible_numbers_stay(count: int, command: str) -> None:
     reading = read(command.replace("N", str(count)))
@@ -43,7 +57,7 @@ def test_possible_numbers_stay(count: int, command: str) -> None:
     "text",
     [
         "clap in 100 people's faces", "count to 100", "wave for 45 seconds", "turn your head by 90 degrees",
-        "raise your hand 2.50 m",
+        "raise your hand 2.50 m", "conduct as if there were five hundred singers",
     ],
 )  # fmt: skip
 def test_numbers_that_count_no_strokes_stay(text: str) -> None:

@@ -53,7 +53,7 @@ def test_other_commands_keep_their_words(commands: list[str]) -> None:
 def test_what_describes_a_pose_of_both_arms_stays_with_it() -> None:
     assert said("clap your hands, right hand on top") == "clap your hands, right hand on top"
     assert said("fold your arms, left arm on top") == "fold your arms, left arm on top"
-    assert said("raise your hand and hold it up for two seconds") == "raise your right hand (held for 2 s)"
+    assert said("raise your hand and hold it up for two seconds") == "raise your right hand (for 2 s)"
 
 
 @pytest.mark.parametrize(
@@ -62,7 +62,7 @@ def test_what_describes_a_pose_of_both_arms_stays_with_it() -> None:
         ("wipe your brow, left hand", "wipe your brow with your left hand"),
         ("wave! Use the left one, please", "wave with your left hand"),
         ("salute, only with your right", "salute with your right hand"),
-        ("stir the soup, left arm, 20 seconds", "stir the soup with your left hand (held for 20 s)"),
+        ("stir the soup, left arm, 20 seconds", "stir the soup with your left hand (for 20 s)"),
         ("reach forward, dear, with your right hand", "reach forward with your right hand"),
         # and what names another command or is no arm's
         ("wave, then the left hand", "wave > wave with your left hand"),

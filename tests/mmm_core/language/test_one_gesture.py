@@ -46,10 +46,10 @@ def test_each_phrase_of_the_table_needs_it_to_be_one_command(every: int) -> None
     ("text", "read_as"),
     [
         # a pose that is kept, said as a denial
-        ("request silence and do not move for two seconds", "request silence (held for 2 s)"),
-        ("cup your left ear and don't move for 3 seconds", "cup your left ear (held for 3 s)"),
-        ("raise your right arm without moving for four seconds", "raise your right arm (held for 4 s)"),
-        ("raise your right arm, not moving for 2 seconds", "raise your right arm (held for 2 s)"),
+        ("request silence and do not move for two seconds", "request silence (for 2 s)"),
+        ("cup your left ear and don't move for 3 seconds", "cup your left ear (for 3 s)"),
+        ("raise your right arm without moving for four seconds", "raise your right arm (for 4 s)"),
+        ("raise your right arm, not moving for 2 seconds", "raise your right arm (for 2 s)"),
         # a part of the arm that was named, and what an arm got ready for
         ("left elbow out, hand on the hip", "left elbow out, hand on the hip"),
         ("flex your right elbow and lay the hand on your nape", "flex your right elbow and lay the hand on your nape"),

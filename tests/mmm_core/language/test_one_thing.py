@@ -22,7 +22,7 @@ from mmm_core.language.reading import read
         ("hand on your heart, then take it off", "put your right hand on your heart; lower your right arm"),
         ("take your left hand off your heart", "lower your left hand"),
         ("lift your right hand to your brow, keep it there for two seconds, snap it back to your side",
-         "lift your right hand to your brow (held for 2 s); lower your right hand (1.6 times as fast)"),
+         "lift your right hand to your brow (for 2 s); lower your right hand (1.6 times as fast)"),
         ("with the left: knock, then wave", "knock with your left hand; wave with your left hand"),
         # how strongly and how fast
         ("knock softly on the door", "knock on the door (0.6 times as large)"), ("bow softly", "bow (0.62 times as fast)"),

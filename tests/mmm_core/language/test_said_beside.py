@@ -49,7 +49,7 @@ from mmm_core.language.reading import read
         ("wave as big as you can with the left arm", "wave with the left arm (1.4 times as large)"),
         ("jiggle my hand up and down using your right hand", "jiggle my hand up and down using your right hand"),
         ("make an ear trumpet with his right hand and holds it for one second",
-         "make an ear trumpet with his right hand (held for 1 s)"),
+         "make an ear trumpet with his right hand (for 1 s)"),
         ("the left hand rests, beckon me with your right hand", "beckon me with your right hand"),
         ("stop stirring the soup and clap your hands", "clap your hands"),
         ("for the love of god stop clapping and nod your head", "nod your head"),

@@ -52,7 +52,7 @@ def test_what_is_read(text: str, read_as: str) -> None:
 @pytest.mark.parametrize(
     ("text", "read_as"),
     [
-        ("wave 2 the crowd 4 me", "wave your right hand"), ("hold ur arm up 4 5 secs", "raise your arm up (held for 5 s)"),
+        ("wave 2 the crowd 4 me", "wave your right hand"), ("hold ur arm up 4 5 secs", "raise your arm up (for 5 s)"),
         ("lift ur left arm hi", "lift your left arm high"), ("raise your hand I mean your left hand", "raise your left hand"),
         ("turn your head to the left uh right", "turn your head to the right"), ("pray 4 us xx", "pray silently"),
         ("put both arms up no sorry just the left one", "put your left arm up"),

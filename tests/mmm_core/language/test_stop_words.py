@@ -78,3 +78,11 @@ def test_the_corpus_says_none_but_to_stand_still() -> None:
 def test_a_command_after_a_stop_is_read(text: str, command: str) -> None:
     """The first of these was refused: "it only says not to do 'and look left'"."""
     assert read(text).words == command
+
+
+@pytest.mark.parametrize(
+    "text", ["nod three times, after that stop", "nod three times and stop after that", "nod three times. Then stop!"]
+)
+def test_a_stop_at_the_end_is_no_gesture(text: str) -> None:
+    """The first of these ended in a stop sign."""
+    assert read(text).words == "nod three times"
