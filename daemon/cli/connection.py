@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from daemon.settings.config import Endpoints
+from daemon.settings.config import Endpoints, named_in_environment
 
 if TYPE_CHECKING:
     from daemon.client import AsyncClient, Client
@@ -14,9 +15,15 @@ if TYPE_CHECKING:
 _DEFAULT = Endpoints()
 
 
+def _endpoint(key: str) -> str:
+    """The endpoint that the environment names, else the default one; it is checked when it is used."""
+    default = "" if key == "stream" else getattr(_DEFAULT, key)
+    return named_in_environment().get(key, default)
+
+
 @dataclass(frozen=True)
 class Connection:
-    """Endpoints of the daemon.
+    """Endpoints of the daemon; MMMD_CMD, MMMD_CTL, MMMD_PUB and MMMD_STREAM in the environment name others, for `mmmd run` too.
 
     Attributes:
         cmd: endpoint of requests.
@@ -27,11 +34,11 @@ class Connection:
         timeout_s: longest wait for a reply.
     """
 
-    cmd: str = _DEFAULT.cmd
-    ctl: str = _DEFAULT.ctl
-    pub: str = _DEFAULT.pub
+    cmd: str = field(default_factory=partial(_endpoint, "cmd"))
+    ctl: str = field(default_factory=partial(_endpoint, "ctl"))
+    pub: str = field(default_factory=partial(_endpoint, "pub"))
     keys: Path | None = None
-    stream: str = ""
+    stream: str = field(default_factory=partial(_endpoint, "stream"))
     timeout_s: float = 5.0
 
     def client(self) -> Client:

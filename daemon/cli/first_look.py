@@ -61,7 +61,7 @@ def first_look() -> FirstLook:
     from retarget.robot.loading import list_robots
 
     torch = importlib.util.find_spec("torch") is not None
-    return FirstLook(_usb_ports(), tuple(list_robots()), torch, listening(Endpoints().ctl))
+    return FirstLook(_usb_ports(), tuple(list_robots()), torch, listening(Endpoints.of_environment().ctl))
 
 
 def robots_that_fit(found: Iterable[tuple[int, int]]) -> list[str]:

@@ -21,12 +21,12 @@ class AsyncConnection:
     """Sends requests and receives events over `cmd` and `ctl`, from one event loop.
 
     Args:
-        endpoints: the daemon's endpoints.
+        endpoints: the daemon's endpoints; those that the environment names (`MMMD_CMD`, ...) when they are not given.
         timeout_s: seconds to wait for a reply at most.
     """
 
     def __init__(self, endpoints: Endpoints | None = None, timeout_s: float = REPLY_TIMEOUT_S) -> None:
-        self.endpoints = endpoints or Endpoints()
+        self.endpoints = endpoints or Endpoints.of_environment()
         self._timeout_s = timeout_s
         self._context = zmq.asyncio.Context()
         self._lines: dict[str, Line] = {}

@@ -9,9 +9,9 @@ from typing import Self
 import zmq
 
 from daemon.client.compositions import REPLY_TIMEOUT_S
-from daemon.client.errors import ConnectionLostError, NoAnswerError, RefusedError, stamp, unexpected
+from daemon.client.errors import ConnectionLostError, NoAnswerError, NobodyListensError, RefusedError, stamp, unexpected
 from daemon.network.keys import KeyFolder, connect_curve
-from daemon.network.probe import PROBE_TIMEOUT_S, listening
+from daemon.network.probe import listening
 from daemon.settings.config import Endpoints
 from daemon.wire.codec import decode_event, encode
 from daemon.wire.events import Ack, AnyEvent, Refusal
@@ -27,12 +27,12 @@ class Connection:
     ZeroMQ connects again by itself when the daemon comes back; a request that could not be sent meanwhile is not sent later.
 
     Args:
-        endpoints: the daemon's endpoints.
+        endpoints: the daemon's endpoints; those that the environment names (`MMMD_CMD`, ...) when they are not given.
         timeout_s: seconds to wait for a reply at most.
     """
 
     def __init__(self, endpoints: Endpoints | None = None, timeout_s: float = REPLY_TIMEOUT_S) -> None:
-        self.endpoints = endpoints or Endpoints()
+        self.endpoints = endpoints or Endpoints.of_environment()
         self._timeout_s = timeout_s
         self._context = zmq.Context()
         self._cmd: zmq.Socket[bytes] | None = None
@@ -106,7 +106,7 @@ class Connection:
 
     def _connect(self, endpoint: str) -> zmq.Socket[bytes]:
         if not listening(endpoint):
-            raise NoAnswerError(endpoint, "connect", PROBE_TIMEOUT_S)
+            raise NobodyListensError(endpoint)
         socket = self._context.socket(zmq.DEALER)
         socket.setsockopt(zmq.LINGER, 200)
         socket.setsockopt(zmq.IMMEDIATE, 1)

@@ -20,6 +20,9 @@ _BAD_NAMES = ("unknown_gesture", "unknown_motion", "bad_file")
 """Codes of refusals of requests that name an unknown gesture, motion or file."""
 ARMING_ENDS = ("idle", "moving", "holding", "fault", "estop")
 """States in which arming has ended; arming that was broken off may end in limp as well."""
+_START_OR_NAME = (
+    "is `mmmd run` running there? Start it, or name its port with --cmd, --ctl, --pub or MMMD_CMD, MMMD_CTL, MMMD_PUB"
+)
 
 
 class NoAnswerError(DaemonError, TimeoutError):
@@ -30,10 +33,20 @@ class NoAnswerError(DaemonError, TimeoutError):
         super().__init__(self._message())
 
     def _message(self) -> str:
-        do = "is `mmmd run` running there? Start it, or name its port with --cmd, --ctl, --pub"
+        do = _START_OR_NAME
         if self.endpoint.startswith("tcp://"):
             do += "; a daemon with keys answers nobody without an allowed one (--keys, `mmmd keys --help`)"
         return f"{self.asked}: no answer from {self.endpoint} in {self.timeout_s:g} s; {do}"
+
+
+class NobodyListensError(NoAnswerError):
+    """Nothing takes connections at the endpoint."""
+
+    def __init__(self, endpoint: str) -> None:
+        super().__init__(endpoint, "connect", 0.0)
+
+    def _message(self) -> str:
+        return f"{self.asked}: nothing listens at {self.endpoint}; {_START_OR_NAME}"
 
 
 class ConnectionLostError(NoAnswerError):

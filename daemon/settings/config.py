@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ipaddress
+import os
 from collections.abc import Set
 from dataclasses import Field, dataclass, field, fields
 from pathlib import Path
@@ -121,6 +122,12 @@ def settings_of_class(kind: type[DaemonConfig] | type[Endpoints]) -> dict[str, t
     return {f.name: (f, f.metadata["setting"]) for f in fields(kind) if "setting" in f.metadata}
 
 
+def named_in_environment() -> dict[str, str]:
+    """The endpoints that the environment names, by key: `MMMD_CMD` as "cmd"."""
+    named = {key: os.environ.get(f"MMMD_{key.upper()}", "") for key in ("cmd", "ctl", "pub", "stream")}
+    return {key: endpoint for key, endpoint in named.items() if endpoint}
+
+
 @dataclass(frozen=True)
 class Endpoints:
     """Addresses of the daemon's sockets."""
@@ -138,6 +145,15 @@ class Endpoints:
         "",
         "endpoint of joint targets under a lease; beside `cmd` (four ports on, or PATH.stream) when it is not given",
     )
+
+    @classmethod
+    def of_environment(cls) -> Endpoints:
+        """The endpoints that `MMMD_CMD`, `MMMD_CTL`, `MMMD_PUB` and `MMMD_STREAM` name, else the default ones.
+
+        Raises:
+            ConfigError: as below.
+        """
+        return cls(**named_in_environment())
 
     def __post_init__(self) -> None:
         """Refuse endpoints that other machines could reach, and two sockets at one address.

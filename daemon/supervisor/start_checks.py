@@ -14,6 +14,8 @@ from daemon.settings.config import HTTP_ADDRESS, DaemonConfig, EndpointInUseErro
 
 SAFETENSORS_HEAD_BYTES = 9
 """Bytes read of a checkpoint: eight with the header's length, and the brace with which the header begins."""
+LOG_SUFFIX = ".mcap"
+"""Ending of a log's name; without it the name is that of a folder, which each start puts a log of its own into."""
 
 
 def check_config(config: DaemonConfig) -> None:
@@ -94,6 +96,8 @@ def log_path_error(path: Path) -> str | None:
     """The reason why a log cannot be written to `path`; None when it can."""
     if path.exists():
         return f"--log {path}: the file exists; choose another name, or a folder; logs are not overwritten"
+    if path.suffix != LOG_SUFFIX:
+        return f"--log {path}: no folder {path}; make it (`mkdir -p {path}`), or name a file that ends in {LOG_SUFFIX}"
     if not path.parent.is_dir():
         return f"--log {path}: no folder {path.parent}; make it, or choose another"
     return None

@@ -69,7 +69,7 @@ async def answer(robot: AsyncClient, sentence: str) -> None:
 
 async def main() -> None:
     """Answer every sentence as it is heard, and wait for the last answers."""
-    default = Endpoints()
+    default = Endpoints.of_environment()
     parser = argparse.ArgumentParser(description="a voice assistant's loop")
     parser.add_argument("recording", type=Path)
     parser.add_argument("transcript", type=Path)

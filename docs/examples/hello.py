@@ -17,7 +17,7 @@ from daemon.wire.requests import Say
 
 def main() -> int:
     """Say a text, print what becomes of it as it comes, then begin a wave and stop it in the middle; 0 when all of it was done."""
-    default = Endpoints()
+    default = Endpoints.of_environment()
     parser = argparse.ArgumentParser(description=__doc__)
     for name in ("cmd", "ctl", "pub"):
         parser.add_argument(f"--{name}", default=getattr(default, name))

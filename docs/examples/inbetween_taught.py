@@ -20,7 +20,7 @@ from daemon.wire.requests import KeyPoseOf
 
 def main() -> int:
     """Go through the poses; 0 when the robot has met them."""
-    default = Endpoints()
+    default = Endpoints.of_environment()
     parser = argparse.ArgumentParser(description="a way between two taught poses")
     parser.add_argument("first", help="gesture whose pose is met at 2 s")
     parser.add_argument("second", help="gesture whose pose is met at 4 s")

@@ -25,7 +25,7 @@ SCENES = [
 
 def main() -> int:
     """Tell the story; 0 when it was played to its end."""
-    default = Endpoints()
+    default = Endpoints.of_environment()
     parser = argparse.ArgumentParser(description="a story of several scenes")
     for name in ("cmd", "ctl", "pub"):
         parser.add_argument(f"--{name}", default=getattr(default, name))

@@ -30,7 +30,7 @@ class RetargetReport:
         bone_p95_deg: the 95th percentile of each bone.
         bone_max_deg: the largest value of each bone.
         clipped_frames: frames in which a position limit changed a joint's target.
-        clipped_joints: frames for each joint that is over a degree off its target.
+        off_target_joints: frames for each joint that is over a degree off its target.
         at_limit: for "position", "velocity" and "acceleration", the frames in which it held up each joint.
         interventions: times the path was changed because the robot would have touched itself.
         peak_speed_share: largest speed as a share of the joint's limit.
@@ -50,7 +50,7 @@ class RetargetReport:
     bone_p95_deg: dict[str, float]
     bone_max_deg: dict[str, float]
     clipped_frames: int
-    clipped_joints: dict[str, int]
+    off_target_joints: dict[str, int]
     at_limit: dict[str, dict[str, int]]
     interventions: int
     peak_speed_share: float
@@ -109,7 +109,7 @@ class Comparison:
             bone_p95_deg=dict(zip(BONES, map(_round, np.percentile(every, 95, axis=1)), strict=True)),
             bone_max_deg=dict(zip(BONES, map(_round, every.max(1)), strict=True)),
             clipped_frames=int(self.outside.any(1).sum()),
-            clipped_joints=self._frames(np.abs(self.off_rad) > _CHANGED_RAD),
+            off_target_joints=self._frames(np.abs(self.off_rad) > _CHANGED_RAD),
             at_limit={kind: self._frames(frames) for kind, frames in held_up.items()},
             interventions=self.interventions,
             peak_speed_share=_round(fastest.max(), 4),

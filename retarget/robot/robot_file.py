@@ -20,8 +20,8 @@ from retarget.robot.robot import DIRECTIONS, ROLES, BusSettings, JointSpec, Poin
 from retarget.robot.tables import FORMAT, JointTable, MotionTable, RobotTable, keys_at, walk
 from retarget.robot.ticks import JointServoMap
 
-_MOST_RAD = 6.3
-"""Degrees: if no joint's limit is larger, the file is taken to be written in radians and is refused."""
+MOST_RAD = 6.3
+"""Degrees: if no joint's limit is larger, the file is taken to be written in radians and is refused; of one joint it is doubted."""
 
 
 def read_robot_file(path: Path, blanks: bool = False) -> RobotModel:
@@ -107,7 +107,7 @@ def _check_whole(path: Path, table: RobotTable) -> None:
     if forward[-1] == up[-1]:
         raise RobotFileError(path, "frame", f"forward '{forward}' and up '{up}'", "two different axes")
     reach = max(abs(end) for j in table.joint for end in j.position_limit_deg)
-    if reach <= _MOST_RAD:
+    if reach <= MOST_RAD:
         found = f"no limit beyond {reach:g} degrees: these look like radians"
         raise RobotFileError(path, "joint position_limit_deg", found, "degrees")
     _refuse_doubles(path, "name", [j.name for j in table.joint])

@@ -10,6 +10,7 @@ import numpy as np
 from retarget.pipeline import Retargeter
 from retarget.robot.description import load_description, read_spec
 from retarget.robot.robot import RobotModel
+from retarget.robot.robot_file import MOST_RAD
 
 _BEYOND_DEG = 0.51
 """Degrees by which a limit of the file may exceed the description's: limits may be rounded to whole degrees."""
@@ -45,12 +46,16 @@ def inspect_robot(robot: RobotModel) -> Inspection:
 def _ranges(robot: RobotModel, model: Any) -> list[str]:
     doubts: list[str] = []
     for joint in robot.joints:
+        own = np.rad2deg([joint.position_min_rad, joint.position_max_rad])
+        if np.abs(own).max() <= MOST_RAD:
+            doubts.append(
+                f"{joint.name}: position_limit_deg [{own[0]:.4g}, {own[1]:.4g}] is hardly a movement; degrees, not radians?"
+            )
         found = model.joint(joint.name)
         if not model.jnt_limited[found.id]:
             doubts.append(f"{joint.name}: the description has no range; position_limit_deg is all there is")
             continue
         low, high = np.rad2deg(found.range).tolist()
-        own = np.rad2deg([joint.position_min_rad, joint.position_max_rad])
         if own[0] < low - _BEYOND_DEG or own[1] > high + _BEYOND_DEG:
             beyond = f"[{own[0]:.0f}, {own[1]:.0f}] is wider than the description's [{low:.0f}, {high:.0f}]"
             doubts.append(f"{joint.name}: position_limit_deg {beyond}")

@@ -113,6 +113,7 @@ def test_a_log_that_exists_is_not_overwritten(tmp_path):
     assert log_file(path) == path
     assert path.read_text() == "dear old log"
     assert "no folder" in refused("--log", str(tmp_path / "none" / "run.mcap"), here=True)
+    assert "mkdir" in refused("--log", f"{tmp_path / 'none'}/", here=True)  # a file of that name was written
 
 
 def test_an_endpoint_that_others_could_reach():

@@ -82,6 +82,20 @@ def test_the_description_may_stand_elsewhere(tmp_path: Path) -> None:
     assert robot.description_path.resolve() == path.resolve()
 
 
+def test_check_doubts_a_joint_in_radians(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """One joint of a file in degrees was given in radians, and nothing was said."""
+    shutil.copytree(ROBOTS_DIR / "reference", tmp_path / "mine")
+    robot_file = tmp_path / "mine" / "robot.toml"
+    block = robot_file.read_text()
+    at = block.index('name = "waist_yaw"')
+    robot_file.write_text(
+        block[:at] + re.sub(r"position_limit_deg = \[.*?\]", "position_limit_deg = [-0.8, 0.8]", block[at:], count=1)
+    )
+    assert main(["robot", "check", str(tmp_path / "mine")]) == 0
+    doubts = [line for line in capsys.readouterr().out.splitlines() if "radians?" in line]
+    assert doubts == ["look at: waist_yaw: position_limit_deg [-0.8, 0.8] is hardly a movement; degrees, not radians?"]
+
+
 def test_check_says_what_touches(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     shutil.copytree(ROBOTS_DIR / "reference", tmp_path / "mine")
     robot_file = tmp_path / "mine" / "robot.toml"

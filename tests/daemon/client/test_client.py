@@ -12,8 +12,9 @@ import pytest
 import zmq
 
 from daemon.cli.client.control import _tell
+from daemon.cli.connection import Connection as ShellConnection
 from daemon.client import AsyncClient, Client, NoAnswerError, RefusedError
-from daemon.client.errors import ConnectionLostError
+from daemon.client.errors import ConnectionLostError, NobodyListensError
 from daemon.errors import ConfigError
 from daemon.settings.config import Endpoints
 from daemon.settings.sources import config_of, resolve
@@ -245,3 +246,17 @@ def test_a_daemon_that_ends_ends_the_wait_of_the_asyncio_client(endpoints):
             await heard.aclose()
 
     asyncio.run(asyncio.wait_for(wait(), 20))
+
+
+def test_a_client_finds_the_daemon_that_the_environment_names(monkeypatch: pytest.MonkeyPatch) -> None:
+    """`mmmd run` heeded `MMMD_CMD` and its like, and the clients did not."""
+    named = {key: f"ipc:///tmp/mmmd-nobody/{key}" for key in ("cmd", "ctl", "pub")}
+    for key, endpoint in named.items():
+        monkeypatch.setenv(f"MMMD_{key.upper()}", endpoint)
+    with Client() as robot:
+        assert robot.endpoints == Endpoints(**named)
+        with pytest.raises(NobodyListensError, match="nothing listens at ipc:///tmp/mmmd-nobody/ctl"):
+            robot.status()
+    shell = ShellConnection()
+    assert (shell.cmd, shell.ctl, shell.pub) == tuple(named.values())
+    assert shell.endpoints == Endpoints(**named)

@@ -30,7 +30,7 @@ class Bridge(Node):
 
     def __init__(self) -> None:
         super().__init__("mmmd")
-        default = Endpoints()
+        default = Endpoints.of_environment()
         names = ("cmd", "ctl", "pub")
         self._at = Endpoints(*(self.declare_parameter(name, getattr(default, name)).value for name in names))
         group = ReentrantCallbackGroup()
