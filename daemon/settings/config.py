@@ -122,7 +122,7 @@ def settings_of_class(kind: type[DaemonConfig] | type[Endpoints]) -> dict[str, t
     return {f.name: (f, f.metadata["setting"]) for f in fields(kind) if "setting" in f.metadata}
 
 
-def named_in_environment() -> dict[str, str]:
+def named_in_environment() -> dict[str, Any]:
     """The endpoints that the environment names, by key: `MMMD_CMD` as "cmd"."""
     named = {key: os.environ.get(f"MMMD_{key.upper()}", "") for key in ("cmd", "ctl", "pub", "stream")}
     return {key: endpoint for key, endpoint in named.items() if endpoint}

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daemon.playback.sources.lacking import instead, lacking
-from daemon.poses.pose_sequence import PoseSequence
+from daemon.poses.pose_sequence import PoseSequence, distance_deg, posture_of
 from daemon.state.ledger import Entry
 from mmm_core.motion.motion import Motion
 from mmm_core.motion.posture_features import posture_features
@@ -27,6 +27,8 @@ Array = NDArray[np.float64]
 SHOWN, IN_PART, NOT_SHOWN = "shown", "in part", "not shown"
 _TOUCHING_M, _LOOKED_AT = 0.03, 200
 """Metres between a robot's hands up to which they touch, and number of poses examined."""
+_OTHER_POSE_DEG = 20.0
+"""Degrees by which the first pose of a robot differs from that of a motion where it began in another one."""
 LONGEST_S = 15.0
 """Seconds of a motion that are judged; a longer motion is not judged."""
 
@@ -105,6 +107,7 @@ class Showing:
             meant = all("stand" in families_named(scene.words) for scene in scenes)
             return Verdict(SHOWN, said) if meant else Verdict(NOT_SHOWN, said, "nothing moves")
         robots = as_motion(self._retargeter.kinematics, q_rad[: round(motion.duration_s * fps) + 1], fps, motion)
+        robots = _from_its_first_pose(robots, motion)
         missing = [(act, what, instead(act, robots)) for act, what in lost(robots, scenes, acts)]
         missing += [(act, self._apart(q_rad, robots), "") for act in every if palms_meet(act.family)]
         missing = [row for row in missing if row[1]]
@@ -126,6 +129,18 @@ class Showing:
         on_a_person_m = float(np.linalg.norm(palms[0] - palms[1], axis=-1).min())
         together = apart_m < _TOUCHING_M or (np.isinf(apart_m) and on_a_person_m < _TOUCHING_M + TOUCHING_M)
         return "" if together else f"the hands stay {100 * min(apart_m, on_a_person_m):.0f} cm apart"
+
+
+def _from_its_first_pose(robots: Motion, motion: Motion) -> Motion:
+    """A robot's motion with the first pose of the motion that it follows, where the robot began in another one.
+
+    Signs are measured from the first pose: a robot that bows while it is bent does not bend from there.
+    """
+    if distance_deg(posture_of(robots)[:1], posture_of(motion)[:1])[0] < _OTHER_POSE_DEG:
+        return robots
+    joints_m, head_quat_wxyz = robots.joints_m.copy(), robots.head_quat_wxyz.copy()
+    joints_m[0], head_quat_wxyz[0] = motion.joints_m[0], motion.head_quat_wxyz[0]
+    return replace(robots, joints_m=joints_m, head_quat_wxyz=head_quat_wxyz)
 
 
 def at_tempo(scenes: Sequence[Scene], tempo: float) -> list[Scene]:

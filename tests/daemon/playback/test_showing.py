@@ -10,8 +10,9 @@ import pytest
 from daemon.gestures.clips import load_clips
 from daemon.gestures.library import SHIPPED
 from daemon.playback.sources.showing import Showing, Verdict
-from daemon.poses.pose_sequence import PoseSequence, standing
+from daemon.poses.pose_sequence import PoseSequence, faded_in, joined, standing
 from mmm_core.motion.motion import FPS
+from mmm_core.motion.posture_features import PostureFeatures, posture_features
 from mmm_core.recognition.seen import Scene
 from retarget.pipeline import Retargeter
 from retarget.robot.loading import load_robot
@@ -28,6 +29,11 @@ def clip(name: str) -> PoseSequence:
 
 def scenes(posture: PoseSequence, words: str) -> list[Scene]:
     return [Scene(len(posture) / posture.fps, words)]
+
+
+def posture_features_of(posture: PoseSequence) -> PostureFeatures:
+    motion = posture.motion()
+    return posture_features(motion.joints_m, motion.head_quat_wxyz, motion.forearm_twist_rad)
 
 
 def verdict(robot: str, posture: PoseSequence, words: str) -> Verdict:
@@ -74,6 +80,18 @@ def test_a_bow_is_shown_with_a_waist_and_in_part_with_a_head():
     assert (whole.shown, whole.missing) == ("shown", "") and whole.seen.startswith("bows")
     head = verdict("op3", clip("bow"), "bow")
     assert head.shown == "in part" and head.missing == "the upper body hardly moved, the head bent instead"
+
+
+@pytest.mark.parametrize("words", ["bow", "bow twice"])
+def test_a_bow_that_begins_bent_is_shown(words: str):
+    """A robot that was stopped in a bow and bowed again was told that it had not."""
+    once = clip("bow")
+    posture = joined([once] * (2 if "twice" in words else 1))
+    bent = once[int(posture_features_of(once).trunk_pitch_deg.argmax()) :][:1]
+    played = faded_in(posture, bent, round(0.6 * FPS))
+    goals_rad = Retargeter(load_robot("reference")).retarget(played.motion()).at_rate(FPS)
+    told = showing("reference").verdict(posture, scenes(posture, words), goals_rad, FPS)
+    assert (told.shown, told.missing) == ("shown", ""), told
 
 
 def test_what_a_robot_cannot_show_at_all_is_not_shown():
