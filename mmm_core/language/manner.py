@@ -32,12 +32,11 @@ _SECONDS = {**NUMBERS, "a": 1, "a couple of": 2, "a few": 3, "several": 4, "half
 _NUMBER = (
     r"(a couple of|a few|several|half a|a|\d+(?:\.\d+)?|" + "|".join(word for word in NUMBERS if word.isalpha()) + ")"
 )
-_LASTING = rf"{_NUMBER}(?: full| whole| more)? (?:seconds?|secs?|s|(?:(?<=half a )|(?<!\ba ))(?:minutes?|mins?))\b"
 _HOLD = re.compile(
     r",?\s*(?:\b(?:and |then )?(?:holds?|holding|keeps?|keeping|stays?|staying|remains?|freezes?|waits?|waiting|rests?|leaves?|pauses?)"
     r"(?: (?:it|them|that|this|there|still|so|like (?:that|this)|the (?:pose|position)|your (?:pose|position)|that (?:pose|position)|up|down|in place|"
     r"(?:your|the) (?:left |right )?(?:hand|arm|head)s?))*\s+)?"
-    rf"(?:(?:for|about|exactly|at least|around|nearly|almost|all of|(?:a|the) (?:full|good|whole|solid)|another) )*(?<!\bin )(?<!\bwithin )(?<!\bafter )(?<!\bevery ){_LASTING}(?: long| straight)?"
+    rf"(?:(?:for|about|exactly|at least|around|nearly|almost|all of|(?:a|the) (?:full|good|whole|solid)|another) )*(?<!\bin )(?<!\bwithin )(?<!\bafter )(?<!\bevery ){_NUMBER}(?: full| whole| more)? (?:seconds?|secs?|s)\b(?: long| straight)?"
 )
 _COUNT_OF = re.compile(
     r",?\s*(?:\b(?:and |then )?(?:holds?|holding|keeps?|keeping)(?: (?:it|them|that|this|there))*\s+)?"
@@ -45,10 +44,15 @@ _COUNT_OF = re.compile(
     rf",?\s*\b(?:till|until|while) i (?:have |will )?count(?:ed)?(?: up)? to {_NUMBER}\b"
 )
 """Pattern of a hold with a counted number of seconds."""
-_ONLY_SECONDS = re.compile(
-    rf",?\s*\b(?:(?:for|about|exactly|at least|around|all of|a full) )+{_LASTING}(?: long| straight)?"
+_MINUTES = re.compile(
+    rf",?\s*\bfor (?:(?:about|exactly|at least|around|nearly|almost) )*{_NUMBER}(?: full| whole| more)? "
+    r"(?:(?<=half a )|(?<!\ba ))(?:minutes?|mins?)\b(?: long| straight)?"
 )
-_SECOND = re.compile(r"\d ?s|sec|min")
+"""Pattern of a counted number of minutes; "for a minute" only means briefly."""
+_ONLY_SECONDS = re.compile(
+    rf",?\s*\b(?:(?:for|about|exactly|at least|around|all of|a full) )+{_NUMBER}(?: full| whole| more)? (?:seconds?|secs?|s)\b(?: long| straight)?"
+)
+_SECOND = re.compile(r"\d ?s|sec")
 """Pattern that occurs in every text with a hold, for a quick test."""
 _BEFORE_MARK = re.compile(r"\s+([,.])")
 _AT_ENDS = re.compile(r"^(?:and|but)\s+|[\s,.]+(?:and|but)?[\s,.]*$|^[\s,.]+")
@@ -165,15 +169,14 @@ def _rules(table: str) -> RuleTable:
 
 def _hold(clause: str) -> tuple[str, float]:
     found = _HOLD.search(clause) if _SECOND.search(clause) is not None else None
-    if found is None:
-        found = _COUNT_OF.search(clause)
+    found = found or _COUNT_OF.search(clause) or _MINUTES.search(clause)
     if found is None:
         return clause, 0.0
     if not _READS.search(clause[: found.start()] + clause[found.end() :]):
         found = _ONLY_SECONDS.search(clause) or found
     number = next(group for group in found.groups() if group)
     seconds = float(_SECONDS[number]) if number in _SECONDS else float(number)
-    seconds *= 60 if "min" in found[0] else 1
+    seconds *= 60 if found.re is _MINUTES else 1
     rest = clause[: found.start()] + " " + clause[found.end() :]
     rest = _KEEPS.sub("raise ", rest) if _HIGH.search(rest) else rest
     return rest, min(seconds, LONGEST_HOLD_S)

@@ -37,12 +37,14 @@ _AS = re.compile(
 _COMPARED = re.compile(
     rf"(?:\bby )?(?<![\w.])(?P<number>{_PART}|{_TIMES}) (?P<of>{_FASTER}|{_SLOWER}|{_LARGER}|{_SMALLER})\b(?: than (?:{_USUAL})\b)?"
 )
-_ABOUT = r"(?:\b(?:at|with|to)(?: about| around| roughly| approximately| only| just)? )"
+_ABOUT = r"(?:about|around|roughly|approximately|only|just) "
 _OF_THE_USUAL = re.compile(
-    rf"{_ABOUT}?(?<![\w.])(?P<number>{_PART}|{_TIMES}|{_MULTIPLE}|\d*\.\d+)(?: of)?(?: (?:the|your|its|that|this))?"
-    rf"(?: (?:normal|usual|regular|original))? (?P<of>{_SPEED}|size|amplitude)\b"
+    rf"(?:\b(?:at|with|to) (?:{_ABOUT})?)?(?<![\w.])(?P<number>{_PART}|{_TIMES}|{_MULTIPLE}|\d*\.\d+)(?: of)?"
+    rf"(?: (?:the|your|its|that|this))?(?: (?:normal|usual|regular|original))? (?P<of>{_SPEED}|size|amplitude)\b"
 )
-_AT = re.compile(rf"{_ABOUT}(?P<number>{_TIMES}|\d+(?:\.\d+)? ?(?:%|percent|per cent))(?P<of>)(?!\w)(?! (?:of|on)\b)")
+_AT = re.compile(
+    rf"\bat (?:{_ABOUT})?(?P<number>(?:\d+(?:\.\d+)?|\.\d+) ?(?:times|x|%|percent|per cent))(?P<of>)(?!\w)(?! (?:of|on)\b)"
+)
 """A multiple of the speed, as of a film: "at 2x", "at 50 percent"."""
 _TEMPO = {"", *_FAST.split("|"), *_FASTER.split("|"), *_SLOW.split("|"), *_SLOWER.split("|"), *_SPEED.split("|")}
 _LESS = {*_SLOW.split("|"), *_SLOWER.split("|"), *_SMALL.split("|"), *_SMALLER.split("|")}
