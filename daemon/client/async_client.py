@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import math
 import time
 import uuid
 from collections.abc import AsyncGenerator, Coroutine
@@ -21,6 +22,7 @@ from daemon.client.compositions import (
     MOTION_TIMEOUT_S,
     REPLY_TIMEOUT_S,
     CompositionCalls,
+    has_no_end,
     patience_s,
 )
 from daemon.client.errors import (
@@ -89,7 +91,7 @@ class AsyncClient(AsyncControlCalls, CompositionCalls[Coroutine[Any, Any, Said]]
         return await self.play(request, wait=wait, timeout_s=timeout_s)
 
     async def play(self, request: Play, *, wait: bool = True, timeout_s: float | None = None) -> Said:
-        """Send a request that plays something; return when it has ended, or without `wait` once it is accepted.
+        """Send a request that plays something; return when it has ended; without `wait`, or without an end, once it is accepted.
 
         Raises:
             RefusedError: the request is invalid, was rejected, or failed.
@@ -102,10 +104,11 @@ class AsyncClient(AsyncControlCalls, CompositionCalls[Coroutine[Any, Any, Said]]
                 heard.append(event)
                 if isinstance(event, Refusal):
                     raise RefusedError(event)
-                if not wait:
+                if not wait or has_no_end(event, request):
                     break
         last = heard[-1]
-        if wait and not isinstance(last, Done | Ack):  # an `ack` answers a text that means to stop
+        is_over = isinstance(last, Done | Ack)  # an `ack` answers a text that means to stop
+        if wait and not is_over and not has_no_end(last, request):
             raise CancelledByError(str(getattr(last, "by", "the daemon")))
         return Said(request.id, tuple(heard))
 
@@ -116,6 +119,7 @@ class AsyncClient(AsyncControlCalls, CompositionCalls[Coroutine[Any, Any, Said]]
             NoAnswerError: no answer in time.
         """
         line, asked = self._line(self.endpoints.cmd), f"{tag_of(request)} {request.words[:60]!r}"
+        waits_for_the_end = timeout_s is None
         timeout_s = patience_s(request) if timeout_s is None else timeout_s
         end_s, limit_s = time.monotonic() + timeout_s, min(timeout_s, FIRST_REPLY_TIMEOUT_S)
         async with line.asked(request, limit_s) as heard:
@@ -124,6 +128,8 @@ class AsyncClient(AsyncControlCalls, CompositionCalls[Coroutine[Any, Any, Said]]
                 yield event
                 if event.terminal:
                     return
+                if waits_for_the_end and has_no_end(event, request):
+                    end_s = math.inf
                 limit_s = max(0.0, end_s - time.monotonic())
 
     async def cancel(self, command_id: str = "") -> Ack:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 import uuid
 from collections.abc import Generator, Iterator
@@ -15,6 +16,7 @@ from daemon.client.compositions import (
     MOTION_TIMEOUT_S,
     REPLY_TIMEOUT_S,
     CompositionCalls,
+    has_no_end,
     patience_s,
 )
 from daemon.client.controls import ControlCalls
@@ -62,7 +64,7 @@ class Client(ControlCalls, CompositionCalls[Said]):
             seconds: length of the motion; None lets the model choose.
             prefix_s: seconds of the running motion that the new one continues from, 0.2 to 1.6; 0 for none.
             context: whether the text may refer to what this client said last: "again", "slower", "with the other hand".
-            wait: whether to return when the motion has ended; else once it is accepted.
+            wait: whether to return when the motion has ended; else once it is accepted, as one without end is ("keep waving").
             timeout_s: seconds to wait for the end at most; None takes a time that fits the request.
             command_id: id of the command; a repeated id is one command, an empty one is replaced by a new id.
             options: tempo, amplitude, mirror, repeat, loop, hold, when, at_s, deadline_s; see `daemon.wire.requests.Play`.
@@ -94,7 +96,7 @@ class Client(ControlCalls, CompositionCalls[Said]):
         return self.play(request, wait=wait, timeout_s=timeout_s)
 
     def play(self, request: Play, *, wait: bool = True, timeout_s: float | None = None) -> Said:
-        """Send a request that plays something; return when it has ended, or without `wait` once it is accepted.
+        """Send a request that plays something; return when it has ended; without `wait`, or without an end, once it is accepted.
 
         Raises:
             RefusedError, CancelledByError, NoAnswerError: as for `say`.
@@ -104,10 +106,11 @@ class Client(ControlCalls, CompositionCalls[Said]):
             heard.append(event)
             if isinstance(event, Refusal):
                 raise RefusedError(event)
-            if not wait:
+            if not wait or has_no_end(event, request):
                 break
         last = heard[-1]
-        if wait and not isinstance(last, Done | Ack):  # an `ack` answers a text that means to stop
+        is_over = isinstance(last, Done | Ack)  # an `ack` answers a text that means to stop
+        if wait and not is_over and not has_no_end(last, request):
             raise CancelledByError(str(getattr(last, "by", "the daemon")))
         return Said(request.id, tuple(heard))
 
@@ -120,12 +123,15 @@ class Client(ControlCalls, CompositionCalls[Said]):
         socket = self._cmd_socket()
         self._send(socket, request, self.endpoints.cmd)
         began_s, asked = time.monotonic(), f"{tag_of(request)} {request.words[:60]!r}"
+        waits_for_the_end = timeout_s is None
         timeout_s = patience_s(request) if timeout_s is None else timeout_s
         limit_s = min(timeout_s, FIRST_REPLY_TIMEOUT_S)
         while True:
             event = self._receive(socket, began_s, limit_s, self.endpoints.cmd, asked)
             if event.id not in (request.id, ""):
                 continue
+            if waits_for_the_end and has_no_end(event, request):
+                timeout_s = math.inf
             limit_s = timeout_s
             yield event
             if event.terminal:

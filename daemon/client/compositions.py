@@ -6,6 +6,7 @@ import uuid
 from collections.abc import Sequence
 from typing import Generic, TypeVar, Unpack
 
+from daemon.wire.events import Accepted, AnyEvent
 from daemon.wire.requests import Edit, Inbetween, KeyPoseOf, Play, PlayOptions, Replay, SceneOf, Story
 
 R = TypeVar("R")
@@ -162,3 +163,8 @@ def patience_s(request: Play) -> float:
         return float("inf")
     n = len(request.scenes) if isinstance(request, Story) else 1
     return MOTION_TIMEOUT_S * max(1.0, n * request.repeat / request.tempo)
+
+
+def has_no_end(event: AnyEvent, request: Play) -> bool:
+    """Whether a motion goes round until something ends it because its text says so ("keep waving"), not the request's `loop`."""
+    return isinstance(event, Accepted) and event.goes_on and not request.loop

@@ -14,6 +14,7 @@ def describe(event: object) -> str:
     if isinstance(event, Accepted):
         reason = f" ({event.reason})" if event.reason else ""
         length = f"; {event.duration_s:.1f} s" if event.duration_s else ""
+        length += ", round and round until another command or `mmmd stop` ends it" if event.goes_on else ""
         lacks = f"; this robot cannot show all of it: {event.lacks}" if event.lacks else ""
         is_told = len(event.commands) > 1 or event.denied or event.refers_to
         read = f"; read as: {'; '.join(event.commands)}" if is_told else ""
@@ -52,7 +53,10 @@ def repeatable(events: Iterable[object]) -> str:
     told, began = list[str](), ""
     for event in events:
         if isinstance(event, Accepted):
-            length = f", for {event.duration_s:.1f} s" if event.duration_s else ""
+            length = f", for {event.duration_s:.1f} s" if event.duration_s and not event.goes_on else ""
+            length += (
+                ", on and on until something else is said, or `stop` or `cancel` is called" if event.goes_on else ""
+            )
             began = f"it begins: {event.understood or event.text}{length}"
             told += [f"only in part: {event.reason}"] if event.reason else []
             told += [f"this robot cannot show all of it: {event.lacks}"] if event.lacks else []

@@ -56,6 +56,7 @@ END_S = 2.0
 INSTRUCTIONS = (
     "A humanoid upper body: head, arms and torso. Say short English commands, one motion each, or several with `story`. "
     "'again', 'slower', 'with the other hand', 'three more', 'keep going' refer to what you said last. "
+    "'Keep waving' or 'wave until I say stop' goes on until something else is said. "
     "It cannot walk, squat or move its legs, has no fingers to grasp, point with or count on, holds no objects, shows no face, "
     "does not speak, sees nothing, and knows no other language. Where it refuses a text it says why: tell that to the person or "
     "choose a gesture of `gestures`. Results say what was understood and what was seen on the robot: repeat these, not what was "

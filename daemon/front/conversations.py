@@ -19,6 +19,7 @@ from daemon.wire.requests import MAX_TEXT_CHARS, Gesture, Lease, Say, tag_of
 from mmm_core.language.command_changes import NothingToReferToError
 from mmm_core.language.commands import EXACTLY, Reading, exactly, read_exactly
 from mmm_core.language.context import InContext, in_context
+from mmm_core.language.endless import endless
 from mmm_core.language.reading import read
 from mmm_core.language.warming import warmed
 
@@ -49,6 +50,7 @@ class Conversations:
         self._read = lru_cache(maxsize=KEPT)(read)
         warmed()
         in_context("again", self._read("nod"))  # loads the table of words that refer to the last command
+        endless("keep waving")
 
     def take(self, entry: Entry, client: Client) -> None:
         """Remember a new command of a client; a text that refers to the last command is replaced by its full meaning.
@@ -73,7 +75,7 @@ class Conversations:
         self._reading_of(entry)
 
     def _resolve(self, entry: Entry, request: Say, last: Entry | None) -> None:
-        """Replace a text that refers to the last command by its full meaning.
+        """Replace a text that refers to the last command by its full meaning, and one that asks for no end by what it repeats.
 
         Raises:
             NotPlayableError: the text refers to a command, and there is none that it can refer to.
@@ -81,6 +83,7 @@ class Conversations:
         try:
             meant = in_context(request.text, None if last is None else self._reading_of(last))
             if meant is None or last is None:
+                entry.request = _without_end(request)
                 return
             text = exactly(meant.reading.steps)
             if len(text) > MAX_TEXT_CHARS:
@@ -125,6 +128,18 @@ def _played(request: Say, last: Entry, meant: InContext, text: str) -> Say:
     elif meant.times and not request.loop:
         options["repeat"] = meant.times
     return msgspec.structs.replace(request, text=text, **options)
+
+
+def _without_end(request: Say) -> Say:
+    """The request as a loop or with a held pose, where its text asks for a motion without end and it says not how often."""
+    default = Say(text=request.text)
+    if any(getattr(request, name) != getattr(default, name) for name in _HOW_OFTEN):
+        return request
+    found = endless(request.text)
+    if found is None:
+        return request
+    option = "hold" if found.is_pose else "loop"
+    return msgspec.structs.replace(request, text=found.text, **{option: True})
 
 
 def _nothing_to_refer_to(request: Say, last: Entry | None, error: NothingToReferToError) -> Rejected:

@@ -28,6 +28,7 @@ class Accepted(Event, tag="accepted"):
             for a story, of which only the first part is known.
         generate_ms: time the generator took until there was something to play.
         silence_s: of a lease: without a target for so long it brakes and holds; None for a motion.
+        goes_on: whether the motion goes round until another command, a stop or a cancel ends it (`loop`, "keep waving").
     """
 
     plan_id: int
@@ -44,6 +45,7 @@ class Accepted(Event, tag="accepted"):
     commands: tuple[str, ...] = ()
     denied: tuple[str, ...] = ()
     refers_to: str = ""
+    goes_on: bool = False
 
 
 class Progress(Event, tag="progress"):

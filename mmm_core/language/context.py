@@ -26,10 +26,12 @@ from mmm_core.language.commands import Reading, Steps
 from mmm_core.language.corrections import corrected
 from mmm_core.language.count_words import ADVERBS, NUMBERS
 from mmm_core.language.ellipsis import completed
+from mmm_core.language.endless import WithoutEnd, read_without_end
 from mmm_core.language.multiples import multiple_in
 from mmm_core.language.reading import read
 from mmm_core.language.requests import everyday
 from mmm_core.language.spelling import mended
+from mmm_core.language.stop_words import means_stop
 from mmm_core.language.word_tables import pairs
 
 MOST_WORDS = 16
@@ -178,8 +180,10 @@ def _left_out(text: str, said: str, steps: Steps) -> InContext | None:
     return InContext(replace(read(whole), text=text))
 
 
-def conversation(texts: Sequence[str], reads: Callable[[str], Reading] = read) -> list[InContext | Reading]:
-    """The meanings of texts that follow each other on one connection.
+def conversation(
+    texts: Sequence[str], reads: Callable[[str], Reading] = read
+) -> list[InContext | WithoutEnd | Reading]:
+    """The meanings of texts that follow each other on one connection; a text that means to stop has no commands.
 
     Args:
         texts: the texts in their order.
@@ -188,11 +192,14 @@ def conversation(texts: Sequence[str], reads: Callable[[str], Reading] = read) -
     Raises:
         NothingToReferToError: a text refers to an earlier command, but there is none, or it cannot be changed like this.
     """
-    meant: list[InContext | Reading] = []
+    meant: list[InContext | WithoutEnd | Reading] = []
     before: Reading | None = None
     for text in texts:
-        found = in_context(text, before) or reads(text)
+        if means_stop(text):
+            meant.append(Reading(text, ()))
+            continue
+        found = in_context(text, before) or read_without_end(text, reads) or reads(text)
         meant.append(found)
-        now = found.reading if isinstance(found, InContext) else found
+        now = found if isinstance(found, Reading) else found.reading
         before = now if now.steps else before
     return meant

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from mmm_core.generate.sentence_reader import SentenceReader
     from mmm_core.language.commands import PlainCommand, Reading
     from mmm_core.language.context import InContext
+    from mmm_core.language.endless import WithoutEnd
 
 
 def understand(
@@ -72,10 +73,12 @@ def _reader() -> SentenceReader:
     return SentenceReader.load()
 
 
-def _object(meant: InContext | Reading) -> dict[str, Any]:
+def _object(meant: InContext | WithoutEnd | Reading) -> dict[str, Any]:
     from mmm_core.language.context import InContext
+    from mmm_core.language.endless import WithoutEnd
+    from mmm_core.language.stop_words import means_stop
 
-    reading = meant.reading if isinstance(meant, InContext) else meant
+    reading = _reading(meant)
     found = {
         "text": reading.text,
         "steps": [[_command(c) for c in step] for step in reading.steps],
@@ -83,9 +86,12 @@ def _object(meant: InContext | Reading) -> dict[str, Any]:
         "notes": list(reading.notes),
         "as_it_is": reading.plain,
         "in_context": isinstance(meant, InContext),
+        "stops": means_stop(reading.text),
     }
     if isinstance(meant, InContext):
         found |= {"keeps_going": meant.keeps_going, "times": meant.times}
+    elif isinstance(meant, WithoutEnd):
+        found["keeps_going"] = True
     return found
 
 
@@ -100,13 +106,26 @@ def _command(command: PlainCommand) -> dict[str, Any]:
     }
 
 
-def _lines(meant: InContext | Reading) -> list[str]:
+def _lines(meant: InContext | WithoutEnd | Reading) -> list[str]:
     from mmm_core.language.context import InContext
+    from mmm_core.language.endless import WithoutEnd
+    from mmm_core.language.stop_words import means_stop
 
-    reading = meant.reading if isinstance(meant, InContext) else meant
+    reading = _reading(meant)
+    if means_stop(reading.text):
+        return ["stop: the robot brakes at once and holds"]
     lines = [f"{i}. {sentence}" for i, sentence in enumerate(reading.sentences, 1)]
     lines += [f"not: {denied}" for denied in reading.denied] + list(reading.notes)
+    if isinstance(meant, WithoutEnd) or (isinstance(meant, InContext) and meant.keeps_going):
+        lines.append(
+            "held until something else is said" if meant.is_pose else "round and round until something else is said"
+        )
     if isinstance(meant, InContext):
-        lines += ["held" if meant.is_pose else "round and round"] if meant.keeps_going else []
         lines += [f"{meant.times} times"] if meant.times else []
     return lines if reading.steps else ["nothing is to be done", *lines]
+
+
+def _reading(meant: InContext | WithoutEnd | Reading) -> Reading:
+    from mmm_core.language.commands import Reading
+
+    return meant if isinstance(meant, Reading) else meant.reading

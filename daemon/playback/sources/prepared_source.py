@@ -68,6 +68,7 @@ class PreparedSource:
             commands=self.commands,
             denied=self.denied,
             refers_to=entry.refers_to,
+            goes_on=isinstance(entry.request, Play) and entry.request.loop,
         )
 
 

@@ -159,3 +159,29 @@ def test_nobody_refers_to_what_another_has_said(said):
         else:
             assert entry.request.text == text and not entry.refers_to
             last[client] = text
+
+
+@pytest.mark.parametrize(
+    ("text", "becomes"),
+    [
+        ("keep waving", ("wave", True, False)), ("wave until I say stop", ("wave", True, False)),
+        ("keep your arms up", ("keep your arms up", False, True)), ("wave", ("wave", False, False)),
+    ],
+)  # fmt: skip
+def test_a_text_may_ask_for_no_end(desk, text, becomes):
+    """A wave until somebody says stop was two waves."""
+    said = desk.say(Say(id="a", text=text)).request
+    assert (said.text, said.loop, said.hold) == becomes
+
+
+@pytest.mark.parametrize("option", [{"repeat": 2}, {"loop": True}, {"hold": True}, {"context": False}], ids=str)
+def test_options_say_how_often_before_the_text_does(desk, option):
+    asked = Say(id="a", text="keep waving", **option)
+    assert desk.say(asked).request == asked
+
+
+def test_what_follows_a_motion_without_end_goes_on_as_well(desk):
+    desk.say(Say(id="a", text="keep waving"), ends="")
+    slower = desk.say(Say(id="b", text="slower")).request
+    assert slower.loop and slower.text == "exactly: wave (0.65 times as fast)"
+    assert not desk.say(Say(id="c", text="clap")).request.loop

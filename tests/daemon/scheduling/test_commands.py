@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import asyncio
 import time
 
 import pytest
 
+from daemon.client import AsyncClient
 from daemon.wire import events as ev
 from daemon.wire.requests import Gesture, Say, tag_of
 from tests.support.harness import RATE_HZ
@@ -39,6 +41,23 @@ def test_amplitude_scales_the_movement(robot):
     full = robot.say("wave", seconds=1.0).done
     small = robot.say("wave", seconds=1.0, amplitude=0.4).done
     assert small.peak_speed_share < 0.6 * full.peak_speed_share
+
+
+def test_a_text_without_end_goes_round_until_something_else_is_said(robot, running):
+    """A client that waits for the end of a motion without one gets its acceptance."""
+    said = robot.say("keep waving", command_id="endless")
+    accepted = said.events[-1]
+    assert isinstance(accepted, ev.Accepted) and accepted.goes_on and accepted.text == "keep waving"
+
+    async def ask() -> ev.AnyEvent:
+        async with AsyncClient(running.endpoints) as other:
+            return (await other.say("keep clapping")).events[-1]
+
+    assert robot.status().command.id == "endless"
+    begun = asyncio.run(ask())
+    assert isinstance(begun, ev.Accepted) and begun.goes_on
+    assert robot.status().command.id == begun.id
+    assert not robot.say("wave", seconds=1.0).events[0].goes_on  # ends it, and ends itself
 
 
 @pytest.mark.long
