@@ -2,18 +2,15 @@
 
 from __future__ import annotations
 
-import contextlib
-import os
-import signal
 import sys
 import uuid
-from collections.abc import Generator
 from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeVar, cast
 
 import tyro
 
 from daemon.cli.connection import Connection
+from daemon.cli.interrupts import leaving_at_once
 from daemon.cli.program import FAILED, INTERRUPTED, ROBOT_FAULT
 from daemon.client.event_text import describe
 from daemon.errors import CommandError
@@ -127,7 +124,7 @@ def _interrupted(request: Play, at: Connection) -> int:
     from daemon.client.errors import NoAnswerError, RefusedError
 
     what = f"{request.words[:60]!r}"
-    with _ended_at_once(f"\nmmmd: left; {what} may go on: `mmmd stop` brakes and holds, `mmmd estop` cuts torque\n"):
+    with leaving_at_once(what):
         sys.stderr.write(f"\nmmmd: cancelling {what}: the robot brakes and holds; Ctrl-C again leaves at once\n")
         try:
             with at.client() as robot:
@@ -142,23 +139,3 @@ def _interrupted(request: Play, at: Connection) -> int:
         except NoAnswerError as error:
             sys.stderr.write(f"mmmd: NOT CANCELLED, {what} may go on: {error}\n")
     return INTERRUPTED
-
-
-@contextlib.contextmanager
-def _ended_at_once(message: str) -> Generator[None]:
-    """Let Ctrl-C write a message and end the process without unwinding it.
-
-    Unwinding closes the sockets, and an exception that comes while one is made may leave it open, for which closing then waits.
-    """
-
-    def leave(_number: int, _frame: object) -> None:
-        try:
-            os.write(sys.stderr.fileno(), message.encode())
-        finally:
-            os._exit(INTERRUPTED)
-
-    before = signal.signal(signal.SIGINT, leave)
-    try:
-        yield
-    finally:
-        signal.signal(signal.SIGINT, before)

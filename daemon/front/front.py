@@ -274,4 +274,5 @@ class Front:
             person_m=posture.joints_m[0].round(3).ravel().tolist(),
             person_faces=posture.faces()[0].round(3).tolist(),
             effort=self.view.effort.round(1).tolist(),
+            torque=self.view.torque if self.follower.bus_answers else None,
         )

@@ -46,6 +46,7 @@ from daemon.wire.requests import (
     Status,
     tag_of,
 )
+from daemon.wire.showing import in_words
 from daemon.wire.status import CapabilitiesEvent, JointInfo, StateEvent
 from retarget.robot.robot import RobotModel
 
@@ -173,8 +174,9 @@ class RequestHandler:
             gaze = (request.yaw_deg or 0.0, request.pitch_deg or 0.0)
             self._performer.layers.gaze_deg = gaze
             note = gaze_note(self._robot, *gaze)
-        if self._performer.machine.state.value == "limp":
-            note = "; ".join(filter(None, [note, "the robot is limp: it looks there once it moves"]))
+        state = self._performer.machine.state.value
+        if state in ("limp", "estop", "fault"):
+            note = "; ".join(filter(None, [note, f"the robot is {in_words(state)}: it looks there once it moves"]))
         self._performer.look_again()
         return self._ack(request, note)
 

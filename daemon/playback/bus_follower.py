@@ -68,12 +68,17 @@ class BusFollower:
         return self._view.state is BusState.HOLDING and self._link.setpoints.queued_frames == 0
 
     @property
+    def bus_answers(self) -> bool:
+        """Whether the bus process runs, and its newest cycle is not old."""
+        return self.bus_alive and self._view.silent_s <= BUS_SILENT_S
+
+    @property
     def at_rest(self) -> bool:
         """Whether no goal moves."""
         return self._view.at_rest
 
     def _report(self, state: BusState) -> Trigger:
-        if not self.bus_alive or self._view.silent_s > BUS_SILENT_S:
+        if not self.bus_answers:
             if self.bus_alive and self._to_latch is None:
                 # A frozen bus process must not continue its motion when it runs again.
                 self._to_latch = self._link.request(BusRequest.FAULT)

@@ -32,6 +32,7 @@ class BusView:
         error: (S,) error bits of each servo's last reply.
         effort: (S,) current of each servo in mA, or load in percent for a servo that measures no current; `health` names the unit.
         at_rest: whether the last cycle moved no goal.
+        torque: whether the servos had torque in the last cycle.
         silent_s: age of the newest cycle at the last update, seconds; before the first cycle, time since the first update. The
             age now would be wrong: a front that was held up between update and judgement would count its own pause.
         passed: states in the cycles of the last update, in order, each run of equal states once.
@@ -43,7 +44,7 @@ class BusView:
         self._link, self._robot, self._clock = link, robot, clock
         self._servo_map = JointServoMap(robot)
         self.index = 0
-        self.at_rest = True
+        self.at_rest, self.torque = True, False
         self.goals_s = self.silent_s = 0.0
         self._last_cycle_s: float | None = None
         self.state = BusState.LIMP
@@ -77,7 +78,7 @@ class BusView:
             self.valid, self.error = last["valid"] != 0, np.array(last["error"])
             self.effort = last["present_current_raw"] * self._effort_scale
             self.underruns += int((records["underrun"] != 0).sum())
-            self.at_rest = not np.any(last["velocity_rad_s"])
+            self.at_rest, self.torque = not np.any(last["velocity_rad_s"]), bool(last["torque"])
             self.state = BusState(int(last["state"]))
         states = [int(state) for state in records["state"]]
         self.passed = [BusState(s) for i, s in enumerate(states) if i == 0 or s != states[i - 1]]

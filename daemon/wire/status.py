@@ -213,6 +213,8 @@ class StateEvent(Event, tag="state"):
         servos_not_ok: those whose state is not ok; all are on `v1/health`.
         recording: path of the log, empty when there is none; says so when recording has stopped.
         uptime_s: seconds since the start of the daemon.
+        torque: whether the servos have torque, which an e-stop with `--estop hold` and a fault may leave on; None where the bus
+            process does not say.
     """
 
     robot: str
@@ -237,3 +239,13 @@ class StateEvent(Event, tag="state"):
     person_m: list[float] = msgspec.field(default_factory=list[float])
     person_faces: list[float] = msgspec.field(default_factory=list[float])
     effort: list[float] = msgspec.field(default_factory=list[float])
+    torque: bool | None = None
+
+    @property
+    def with_torque(self) -> str:
+        """Whether a halted robot has torque, in words for a person who wants to reach in; empty in other states."""
+        if self.state not in ("fault", "estop"):
+            return ""
+        if self.torque is None:
+            return "perhaps with torque: keep your hands out"
+        return "with torque on: keep your hands out" if self.torque else "without torque"

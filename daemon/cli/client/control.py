@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Literal
 
 from tyro.conf import OmitArgPrefixes, Positional
 
 from daemon.cli.connection import Connection
+from daemon.cli.interrupts import leaving_at_once
+from daemon.cli.program import INTERRUPTED
+from daemon.client.errors import NoAnswerError
 from daemon.wire.showing import in_words
 
 if TYPE_CHECKING:
@@ -57,7 +61,7 @@ def reset(at: OmitArgPrefixes[Connection] = Connection(), json: bool = False) ->
 
 
 def arm(at: OmitArgPrefixes[Connection] = Connection(), json: bool = False) -> int:  # noqa: B008
-    """Torque on over a goal pinned to the measured pose, then a slow move to the rest pose.
+    """Torque on over a goal pinned to the measured pose, then a slow move to the rest pose. Ctrl-C stops the robot.
 
     Example: mmmd arm
 
@@ -65,12 +69,11 @@ def arm(at: OmitArgPrefixes[Connection] = Connection(), json: bool = False) -> i
         at: where the daemon is.
         json: print one JSON object.
     """
-    with at.client() as robot:
-        return _tell(robot, robot.arm(), json)
+    return _moved(at, "arming", lambda robot: robot.arm(), json)
 
 
 def park(at: OmitArgPrefixes[Connection] = Connection(), json: bool = False) -> int:  # noqa: B008
-    """Move slowly to the park pose, then torque off.
+    """Move slowly to the park pose, then torque off. Ctrl-C stops the robot.
 
     Example: mmmd park
 
@@ -78,8 +81,7 @@ def park(at: OmitArgPrefixes[Connection] = Connection(), json: bool = False) -> 
         at: where the daemon is.
         json: print one JSON object.
     """
-    with at.client() as robot:
-        return _tell(robot, robot.park(), json)
+    return _moved(at, "parking", lambda robot: robot.park(), json)
 
 
 def torque(
@@ -96,11 +98,29 @@ def torque(
         at: where the daemon is.
         json: print one JSON object.
     """
+    if which == "on":
+        return _moved(at, "arming", lambda robot: robot.arm(), json)
     with at.client() as robot:
-        return _tell(robot, robot.arm() if which == "on" else robot.torque_off(), json)
+        return _tell(robot, robot.torque_off(), json)
 
 
 OWED = "not carried out yet; it is, as soon as the bus process runs"
+
+
+def _moved(at: Connection, moving: str, move: Callable[[Client], Ack], json: bool) -> int:
+    """Print the result of a verb that moves the robot; Ctrl-C stops the robot before the command ends."""
+    try:
+        with at.client() as robot:
+            return _tell(robot, move(robot), json)
+    except KeyboardInterrupt:
+        with leaving_at_once(moving):
+            sys.stderr.write(f"\nmmmd: {moving} is stopped: the robot brakes; Ctrl-C again leaves at once\n")
+            try:
+                with at.client() as robot:
+                    _tell(robot, robot.stop(), json)
+            except NoAnswerError as error:
+                sys.stderr.write(f"mmmd: NOT STOPPED, {moving} may go on: {error}\n")
+    return INTERRUPTED
 
 
 def _tell(robot: Client, ack: Ack, json: bool) -> int:
@@ -115,7 +135,8 @@ def _tell(robot: Client, ack: Ack, json: bool) -> int:
     else:
         waits = "; ".join(filter(None, (OWED, after.reason))) if owed else ""
         broken = "arming was broken off, see the daemon's log; `mmmd arm` again" if broken_off else ""
-        reason, now = waits or after.reason or broken, in_words(after.state)
+        reason = waits or after.reason or broken
+        now = ", ".join(filter(None, (in_words(after.state), "" if owed else after.with_torque)))
         told = (
             f"the robot is {now}" if ack.state == after.state else f"the robot was {in_words(ack.state)} and is {now}"
         )

@@ -41,7 +41,7 @@ def status(at: OmitArgPrefixes[Connection] = Connection(), json: bool = False) -
     )
     rows = {
         "robot": f"{now.robot} on {now.bus}",
-        "state": f"{now.state}{_needs(now)}{f': {now.reason}' if now.reason else ''}",
+        "state": f"{', '.join(filter(None, (now.state, now.with_torque)))}{_needs(now)}{f': {now.reason}' if now.reason else ''}",
         "playing": playing,
         "looking": "as the motion does"
         if now.gaze_deg is None

@@ -187,7 +187,8 @@ function head(s) {
   set("robot", s.robot); set("kind", sim ? "SIMULATOR" : `HARDWARE ${s.bus.replace("dxl://", "").split("?")[0]}`, `badge ${sim ? "sim" : "hardware"}`);
   set("state", s.state, `badge ${["fault", "estop"].includes(s.state) ? "bad" : ["idle", "moving"].includes(s.state) ? "good" : ""}`);
   const generator = s.generator.startsWith("ready") ? "" : `; generator ${s.generator}: gestures work`;
-  set("needs", (s.reason || (s.must_arm && s.state === "limp" ? "torque is off; press arm" : NEEDS[s.state])) + generator + (s.recording ? `; recording ${s.recording}` : ""));
+  const torque = !["fault", "estop"].includes(s.state) ? "" : s.torque === false ? "without torque; " : s.torque ? "TORQUE ON: keep your hands out; " : "";
+  set("needs", torque + (s.reason || (s.must_arm && s.state === "limp" ? "torque is off; press arm" : NEEDS[s.state])) + generator + (s.recording ? `; recording ${s.recording}` : ""));
   if ($("needs").title !== $("needs").textContent) $("needs").title = $("needs").textContent;
   document.querySelector("[data-verb=reset]").classList.toggle("pale", !["fault", "estop"].includes(s.state)); // not disabled: a state may come late
   if (document.activeElement !== $("idle") && $("idle").value !== s.idle) $("idle").value = s.idle;

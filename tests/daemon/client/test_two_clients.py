@@ -276,3 +276,19 @@ def test_the_command_serves_stdio(running):
         [*MMMD, "mcp", *running.at], input=talk, capture_output=True, text=True, timeout=30, check=False
     )
     assert result.returncode == 0 and "reference" in json.loads(result.stdout)["result"]["content"][0]["text"]
+
+
+def test_ctrl_c_in_a_verb_that_moves_stops_the_robot(running):
+    """`mmmd arm` ended, and the robot went on to its rest pose without a word."""
+    with running.client() as robot:
+        robot.torque_off()
+        arming = subprocess.Popen(
+            [*MMMD, "arm", *running.at], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+        )
+        robot.wait_for("arming", timeout_s=20)
+        arming.send_signal(signal.SIGINT)
+        out, errors = arming.communicate(timeout=20)
+        assert arming.returncode == 130 and "arming is stopped" in errors, errors
+        assert "stop: the robot was arming" in out
+        assert robot.status().state in ("holding", "limp")
+        robot.arm()

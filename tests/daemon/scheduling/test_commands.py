@@ -43,6 +43,23 @@ def test_amplitude_scales_the_movement(robot):
     assert small.peak_speed_share < 0.6 * full.peak_speed_share
 
 
+def test_status_says_whether_a_halted_robot_has_torque(robot):
+    """With `--estop hold` nothing told the first e-stop, which holds, from the second, which cuts torque."""
+    assert robot.status().torque is True and robot.status().with_torque == ""
+    robot.estop()
+    stopped = robot.status()
+    assert (stopped.torque, stopped.with_torque) == (False, "without torque")
+    stopped.torque = True
+    assert stopped.with_torque == "with torque on: keep your hands out"
+    stopped.torque = None
+    assert stopped.with_torque == "perhaps with torque: keep your hands out"
+    assert "in e-stop: it looks there once it moves" in robot.look(10.0).note
+    robot.look()
+    robot.reset()
+    assert robot.status().torque is False
+    robot.arm()
+
+
 def test_a_text_without_end_goes_round_until_something_else_is_said(robot, running):
     """A client that waits for the end of a motion without one gets its acceptance."""
     said = robot.say("keep waving", command_id="endless")
