@@ -11,7 +11,7 @@ from daemon.errors import ClipError, GestureExistsError, UnknownGestureError
 from daemon.front.conversations import Client, Conversations
 from daemon.front.late_requests import refused_as_late
 from daemon.front.publisher import TOPICS
-from daemon.front.stop_texts import asks_to_stop
+from daemon.front.stop_texts import asks_to_stop, verb_refusal
 from daemon.generator.client import GeneratorClient
 from daemon.gestures.library import GestureLibrary
 from daemon.playback.sources.source_factory import SourceFactory
@@ -99,8 +99,8 @@ class RequestHandler:
                 return
             if asks_to_stop(request):
                 self._performer.stop_for(entry)
-            elif late is not None:
-                self._ledger.emit(entry, late)
+            elif (refused := late or verb_refusal(request)) is not None:
+                self._ledger.emit(entry, refused)
             else:
                 self._play(entry, client)
             return

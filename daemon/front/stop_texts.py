@@ -1,12 +1,31 @@
-"""Requests whose text means to stop: they brake the robot, and no rate limit delays them."""
+"""Requests whose text is for the safety socket `ctl`: a stop brakes the robot, and no rate limit delays it; others are refused."""
 
 from __future__ import annotations
 
+import re
+
 from daemon.wire.codec import WireError, decode_cmd
-from daemon.wire.requests import Command
+from daemon.wire.events import Rejected
+from daemon.wire.requests import Command, Say
 from mmm_core.language.stop_words import may_stop, means_stop
 
 _LONGEST_FRAME_BYTES = 600
+_VERBS = re.compile(
+    r"\W*(?:please |now )?"
+    r"(?:(?P<arm>(?:re)?arm|(?:torque|power|motors|servos) on|(?:turn|switch|power) (?:yourself )?(?:on|up))|(?P<park>park)|(?P<reset>reset))"
+    r"(?: (?:yourself|the robot|robot|please|now))*\W*",
+    re.IGNORECASE,
+)
+
+
+def verb_refusal(request: Command) -> Rejected | None:
+    """The refusal of a text that is a verb of `ctl`: "arm" would move an arm; None for other requests."""
+    verb = _VERBS.fullmatch(request.text) if isinstance(request, Say) else None
+    if verb is None:
+        return None
+    found = "a verb of the socket `ctl`, which no text carries out"
+    do = f"`mmmd {verb.lastgroup}`"
+    return Rejected(code="out_of_scope", asked=f"say {verb[0][:200]!r}", found=found, allowed="motions", do=do)
 
 
 def asks_to_stop(request: Command) -> bool:

@@ -37,6 +37,7 @@ from daemon.state.replies import (
     queue_full,
     refusal,
     refused_later,
+    stop_note,
 )
 from daemon.wire.events import Ack, Cancelled, Failed, Progress
 from daemon.wire.requests import Lease
@@ -114,8 +115,7 @@ class Scheduler:
         self._link.request(BusRequest.STOP)
         self.end_halted()
         self.halts.served()
-        note = f"{entry.request.words[:60]!r} means to stop: the robot brakes and holds; commands ended: {n_ended}"
-        self._ledger.emit(entry, Ack(verb="stop", state=state.value, note=note))
+        self._ledger.emit(entry, Ack(verb="stop", state=state.value, note=stop_note(entry.request.words, n_ended)))
 
     def running_ids(self) -> list[str]:
         """Ids of the commands that have not ended."""

@@ -12,6 +12,7 @@ from daemon.state.machine import CommandRefusedError, Trigger
 from daemon.wire.events import Cancelled, Failed, Rejected
 from daemon.wire.requests import Command, Lease, tag_of
 from daemon.wire.showing import in_words
+from mmm_core.language.stop_words import asks_for_no_power
 
 
 class NotPlayableError(Exception):
@@ -90,3 +91,11 @@ def queue_full(request: Command | Lease, n_waiting: int, most: int) -> Rejected:
     asked, allowed = f"{tag_of(request)} {request.when}", f"at most {most} commands waiting"
     do = "wait until some have been played, or cancel some"
     return Rejected(code="queue_full", asked=asked, found=f"{n_waiting}", allowed=allowed, do=do)
+
+
+def stop_note(words: str, n_ended: int) -> str:
+    """What the answer to a text that means to stop says, where `n_ended` commands were ended."""
+    note = f"{words[:60]!r} means to stop: the robot brakes and holds; commands ended: {n_ended}"
+    if asks_for_no_power(words):
+        note += "; no text cuts torque: `mmmd torque off`, `mmmd park` and `mmmd estop` do"
+    return note

@@ -40,8 +40,19 @@ _STOP_PHRASES = tuple(
     """.split(",")
 )
 """Phrases that stop, or that only name the motion that is to stop."""
+_POWER_PHRASES = tuple(
+    " ".join(phrase.split())
+    for phrase in """
+    torque off, power off, power down, motors off, motor off, servos off, servo off, switch off, turn off, shut off, shut down,
+    shutdown, turn yourself off, switch yourself off, shut yourself off, shut yourself down, power yourself down, power yourself
+    off, turn everything off, switch everything off, shut everything down, cut the power, cut power, cut the torque, cut torque,
+    cut the motors, kill the power, kill the motors, kill the servos, deactivate, disarm
+    """.split(",")
+)
+"""Phrases that ask for no power: no text cuts torque, since arms would drop; such a text stops the robot."""
 
-_PHRASE = re.compile(rf"\b({'|'.join(sorted(_STOP_PHRASES, key=len, reverse=True))})\b")
+_PHRASE = re.compile(rf"\b({'|'.join(sorted((*_STOP_PHRASES, *_POWER_PHRASES), key=len, reverse=True))})\b")
+_POWER_PHRASE = re.compile(rf"\b({'|'.join(_POWER_PHRASES)})\b")
 
 _MOTIONS = frozenset(
     """
@@ -59,7 +70,7 @@ _ACTIVITY = re.compile(
 _NO_ACTIVITIES = frozenset(
     ("anything", "everything", "king", "nothing", "ring", "something", "string", "thing", "wing", "sling")
 )
-_NEEDED = {*_STOP_WORDS, *(max(phrase.split(), key=len) for phrase in _STOP_PHRASES), "more"}
+_NEEDED = {*_STOP_WORDS, *(max(phrase.split(), key=len) for phrase in (*_STOP_PHRASES, *_POWER_PHRASES)), "more"}
 """Words of which every text that stops has one: those that stop, the longest one of each phrase, and that of "no more waving"."""
 _MAY_STOP = re.compile(
     "|".join(
@@ -97,6 +108,15 @@ def means_stop(text: str) -> bool:
     return any(word in _STOP_WORDS for word in rest) and all(
         word in _STOP_WORDS or word in _COURTESY or word in _MOTIONS for word in rest
     )
+
+
+def asks_for_no_power(text: str) -> bool:
+    """Whether a text that means to stop asks for the servos to lose their torque, which no text brings about.
+
+    >>> asks_for_no_power("please turn off the motors"), asks_for_no_power("stop")
+    (True, False)
+    """
+    return _POWER_PHRASE.search(" ".join(_words(text))) is not None
 
 
 def may_stop(request: bytes) -> bool:

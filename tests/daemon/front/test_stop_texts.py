@@ -6,7 +6,8 @@ import json
 
 import pytest
 
-from daemon.front.stop_texts import stops
+from daemon.front.stop_texts import stops, verb_refusal
+from daemon.wire.requests import Say
 from mmm_core.language.stop_words import _STOP_PHRASES, _STOP_WORDS, means_stop
 from tests.support.stop_words_page import listed
 
@@ -47,3 +48,18 @@ def test_every_text_that_stops_does_so_above_the_rate(text: str) -> None:
         assert stops([json.dumps({"type": "say", "text": text}).encode()])
     else:
         assert text in _STOP_PHRASES
+
+
+@pytest.mark.parametrize(
+    ("text", "do"),
+    [("arm", "arm"), ("torque on please!", "arm"), ("park the robot", "park"), ("RESET", "reset")],
+)  # fmt: skip
+def test_a_verb_of_ctl_is_no_motion(text: str, do: str) -> None:
+    """The text "arm" moved an arm."""
+    refused = verb_refusal(Say(id="a", text=text))
+    assert refused is not None and refused.do == f"`mmmd {do}`"
+
+
+@pytest.mark.parametrize("text", ["raise your arm", "park your hands on your hips", "arm up", "turn left", "wave"])
+def test_other_texts_are_motions(text: str) -> None:
+    assert verb_refusal(Say(id="a", text=text)) is None
