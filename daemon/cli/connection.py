@@ -7,6 +7,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from daemon.errors import CommandError
 from daemon.settings.config import Endpoints, named_in_environment
 
 if TYPE_CHECKING:
@@ -45,11 +46,25 @@ class Connection:
         """A client for the daemon.
 
         Raises:
+            CommandError: the time-out is not above zero.
             ConfigError: an endpoint is not a local one and there are no keys.
         """
+        if not self.timeout_s > 0:
+            raise CommandError(f"--timeout-s {self.timeout_s:g}; allowed: more than 0")
+        return self._client(self.timeout_s)
+
+    def client_to_stop(self) -> Client:
+        """A client for a stop, which no wrong time-out may keep from being sent.
+
+        Raises:
+            ConfigError: an endpoint is not a local one and there are no keys.
+        """
+        return self._client(self.timeout_s if self.timeout_s > 0 else Connection.timeout_s)
+
+    def _client(self, timeout_s: float) -> Client:
         from daemon.client import Client
 
-        return Client(self.endpoints, self.timeout_s)
+        return Client(self.endpoints, timeout_s)
 
     def async_client(self) -> AsyncClient:
         """An asyncio client for the daemon.

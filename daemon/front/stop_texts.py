@@ -12,7 +12,8 @@ from mmm_core.language.stop_words import may_stop, means_stop
 _LONGEST_FRAME_BYTES = 600
 _VERBS = re.compile(
     r"\W*(?:please |now )?"
-    r"(?:(?P<arm>(?:re)?arm|(?:torque|power|motors|servos) on|(?:turn|switch|power) (?:yourself )?(?:on|up))|(?P<park>park)|(?P<reset>reset))"
+    r"(?:(?P<arm>(?:re)?arm|(?:torque|power|motors|servos) on|(?:turn|switch|power) (?:yourself )?(?:on|up))|"
+    r"(?P<park>park)|(?P<reset>reset))"
     r"(?: (?:yourself|the robot|robot|please|now))*\W*",
     re.IGNORECASE,
 )

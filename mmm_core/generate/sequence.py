@@ -15,7 +15,7 @@ from torch import Tensor
 from mmm_core.generate.interpretation import ReadCommand
 from mmm_core.generate.motion_model import MotionModel
 from mmm_core.generate.transitions import TRANSITION_TOKENS, transitions
-from mmm_core.language.manner import Manner
+from mmm_core.language.manner import LONGEST_HOLD_S, Manner
 from mmm_core.language.moods import MOODS
 from mmm_core.model.text import TextStates
 from mmm_core.model.tokens import FRAMES_PER_TOKEN, MAX_TOKENS, tokens_for_frames
@@ -55,7 +55,7 @@ class Step:
         return Manner(
             max((m.tempo for m in manners), key=lambda f: abs(f - 1)),
             max((m.size for m in manners), key=lambda f: abs(f - 1)),
-            max(m.hold_s for m in manners),
+            min(LONGEST_HOLD_S, max(m.hold_s for m in manners)),
             next((m.mood for m in manners if m.mood), ""),
         )
 

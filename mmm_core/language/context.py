@@ -24,7 +24,7 @@ from mmm_core.language.command_changes import (
 )
 from mmm_core.language.commands import Reading, Steps
 from mmm_core.language.corrections import corrected
-from mmm_core.language.count_words import ADVERBS, NUMBERS
+from mmm_core.language.count_words import ADVERBS, MOST, NUMBERS
 from mmm_core.language.ellipsis import completed
 from mmm_core.language.endless import WithoutEnd, read_without_end
 from mmm_core.language.multiples import multiple_in
@@ -157,6 +157,8 @@ def _action(action: str, found: re.Match[str]) -> Action:
     groups = {key: v for key, v in found.groupdict().items() if v}
     if name == "side":
         value = groups["side"]
+    elif name == "most_times":
+        name, value = "times", str(MOST)
     elif name == "few_times":
         name, value = "times", str(2 if "couple" in found[0] else FEW)
     elif name == "times":

@@ -46,6 +46,13 @@ def is_manner(clause: str) -> bool:
     return bool(forms.ONLY_MANNER.match(clause))
 
 
+def _in_manner(before: str, clause: str) -> str:
+    """The command before in the manner of a clause instead of its own: "slowly"."""
+    bare = manner_of(before)[0]
+    bare = forms.SIZE_LAST.sub("", bare) if manner_of(f"nod {clause}")[1].size != 1 else bare
+    return f"{bare} {forms.ADVERBS.get(clause, clause)}"
+
+
 def completed(clause: str, before: str) -> str | None:  # noqa: PLR0912  one branch for each form of ellipsis
     """A clause completed with omitted words from the command before; None where the clause is complete.
 
@@ -90,7 +97,7 @@ def completed(clause: str, before: str) -> str | None:  # noqa: PLR0912  one bra
     if (over := forms.OVER_A_SHOULDER.match(clause)) and forms.LOOKED.match(before):
         return f"look {over['over']}"
     if forms.ONLY_MANNER.match(clause):
-        return f"{manner_of(before)[0]} {forms.ADVERBS.get(clause, clause)}"
+        return _in_manner(before, clause)
     if (first := forms.MANNER_FIRST.match(clause)) and (whole := completed(first["rest"], manner_of(before)[0])):
         return f"{whole} {first['how']}"
     if (way := forms.WAY_WITH.match(clause)) and (verb := forms.POINTS.match(before)):
@@ -145,7 +152,7 @@ def completed(clause: str, before: str) -> str | None:  # noqa: PLR0912  one bra
         return forms.AT_TARGET.sub(clause if clause.startswith("at ") else f"at {clause}", before)
     if moved := _other_object(clause, before):
         return moved
-    pronoun = _with_pronoun(clause, before)
+    pronoun = _with_pronoun("lower it" if clause == "lower" else clause, before)
     return _with_limb(pronoun or clause, before) or pronoun
 
 

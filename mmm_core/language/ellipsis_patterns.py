@@ -37,8 +37,10 @@ ANOTHER = re.compile(r"^(?:and |then |now )*(?:again|once more|another(?: one)?|
 ONE_MORE = re.compile(r"^(?:and |then |now )*(?:once more|(?:one|another) more(?: time)?|another(?: one)?)$")
 """A clause that asks for one more stroke of a command that names a number: "nod three times, wait, and once more"."""
 ONLY_MANNER = re.compile(
-    r"^(?:but |and |only )*(?:(?:a (?:bit|little|lot)|much|very|really|even|more|again) )*(?:slow(?:ly|er)?|fast(?:er)?|quick(?:ly|er)?|gently|softly|big(?:ger)?|small(?:er)?|large(?:r)?|wide(?:r|ly)?|deep(?:er|ly)?)$"
+    r"^(?:but |and |only )*(?:(?:a (?:bit|little|lot)|much|very|really|even|more|again) )*(?:slow(?:ly|er)?|fast(?:er)?|quick(?:ly|er)?|gently|softly|big(?:ger)?|small(?:er)?|large(?:r)?|wide(?:r|ly)?|deep(?:er|ly)?|slightly|hugely|(?:just )?a (?:bit|little))$"
 )
+SIZE_LAST = re.compile(r" (?:deep|deeply|low)$")
+"""Size in words of a gesture of its own ("bow deeply"), which a clause of another size replaces: "bow deeply, then slightly"."""
 MANNER_FIRST = re.compile(
     r"^(?P<how>(?:very |really )?(?:slowly|quickly|fast|gently|briskly|rapidly)|a (?:lot|little|bit)|slightly|way|far|deeply) (?P<rest>.+)$"
 )

@@ -1,6 +1,7 @@
-"""Numbers of times that no motion can have.
+"""Numbers of times, and of seconds, that no motion can have.
 
-More than thirty become thirty, "3.5 times" becomes three, and what is asked for zero times is left out.
+More than thirty times become thirty, "3.5 times" becomes three, a longer hold than thirty seconds is made that long, and what is
+asked for zero times is left out.
 """
 
 from __future__ import annotations
@@ -11,6 +12,7 @@ from dataclasses import replace
 from mmm_core.language.commands import PlainCommand, Reading
 from mmm_core.language.count_words import MOST, NUMBERS, count_asked
 from mmm_core.language.limbs import is_gesture_verb, limbs_of
+from mmm_core.language.manner import LONGEST_HOLD_S
 
 _UNIT = r"(?:one|two|three|four|five|six|seven|eight|nine)"
 _TENS = r"(?:forty|fifty|sixty|seventy|eighty|ninety)"
@@ -20,7 +22,10 @@ _LARGE = re.compile(
     rf"(?:thirty[ -]{_UNIT}|{_TENS}(?:[ -]{_UNIT})?)\b|(?<![-.,\d])\d{{1,3}}(?:,\d{{3}})+|(?<![-.,\d])\d{{2,}})(?![.,]\d)",
     re.IGNORECASE,
 )
-_ZERO = re.compile(r"\b(?:(?:zero|0|no) times|0x|x0)\b", re.IGNORECASE)
+_ZERO = re.compile(
+    rf"(?:\b(?:zero|0|no)|(?:(?<!\w)-|\b(?:minus|negative) )(?:\d+|{_ANY})) times\b|\b(?:0x|x0)\b", re.IGNORECASE
+)
+"""No number of strokes: "zero times", "-3 times"."""
 _BROKEN = re.compile(
     rf"\b(?P<whole>\d+)\.\d+(?P<times> ?(?:times|x)\b)|"
     rf"\b(?P<word>{'|'.join(word for word in NUMBERS if word.isalpha())}) and a half(?P<times_of_word> times)\b",
@@ -35,7 +40,7 @@ _X_BEFORE = re.compile(r"\bx(\d{2,})\b", re.IGNORECASE)
 
 
 def within_counts(reading: Reading) -> Reading:
-    """A reading whose commands name whole numbers of times, thirty at most, without those that are to be done zero times.
+    """A reading whose commands name thirty whole times and thirty seconds at most, without those that are to be done zero times.
 
     `notes` says what was changed, `denied` names what is left out.
     """
@@ -54,6 +59,9 @@ def _limited(command: PlainCommand, denied: list[str], notes: list[str]) -> Plai
     if zero := _ZERO.search(command.text):
         denied.append(" ".join((command.text[: zero.start()] + command.text[zero.end() :]).split()))
         return None
+    if command.manner.hold_s > LONGEST_HOLD_S:
+        notes.append(f"{command.manner.hold_s:g} s of '{command.text}' are more than the most, {LONGEST_HOLD_S:g} s")
+        command = replace(command, manner=replace(command.manner, hold_s=LONGEST_HOLD_S))
     if broken := _BROKEN.search(command.text):
         number = broken["word"] or max(int(broken["whole"]), 1)
         whole = f"{number}{broken['times'] or broken['times_of_word']}"

@@ -16,6 +16,7 @@ STRONGER = 1.25
 FASTEST, LARGEST = 2.0, 1.8
 """Largest factors of tempo and size; the smallest factors are their inverses."""
 LONGEST_HOLD_S = 30.0
+"""Longest hold that is made; a longer one is read as it is said (`impossible_counts`)."""
 _GESTURES = (
     "(?:waves?|nods?|bows?|claps?|claps|shrugs?|hugs?|salutes?|leans?|tilts?|punch(?:es)?|stretch(?:es)?|circles?|shakes?|turns?|"
     "movements?|motions?|gestures?|steps?|kisses|kiss|pats?|taps?|knocks?|swings?|strokes?|bends?|twists?|sways?|beckons?|"
@@ -179,4 +180,4 @@ def _hold(clause: str) -> tuple[str, float]:
     seconds *= 60 if found.re is _MINUTES else 1
     rest = clause[: found.start()] + " " + clause[found.end() :]
     rest = _KEEPS.sub("raise ", rest) if _HIGH.search(rest) else rest
-    return rest, min(seconds, LONGEST_HOLD_S)
+    return rest, seconds

@@ -105,7 +105,20 @@ def without_denied_arm(reading: Reading) -> Reading:
     text = re.sub(rf"\b{side}(?= {_ARM_NOUN}\b)", other, command.text)
     if text == command.text or re.search(rf"\b{other}\b", command.text):
         return reading
+    if _n_named(side, mended(reading.text)) > _n_named(side, " ".join(reading.denied)):
+        return _with_asked_arm(reading, side, command.text)
     return replace(reading, steps=((replace(command, text=text, limbs=limbs_of(text)),),))
+
+
+def _n_named(side: str, words: str) -> int:
+    return len(re.findall(rf"\b{side}\b", words.lower()))
+
+
+def _with_asked_arm(reading: Reading, side: str, command: str) -> Reading:
+    """A reading without the denial of an arm that its command asks for by name: no other arm is to move for it."""
+    denied = tuple(words for words in reading.denied if denied_side(words) != side)
+    note = f"'not the {side} arm' is left out, since '{command}' asks for it"
+    return replace(reading, denied=denied, notes=(*reading.notes, note))
 
 
 def _without_gestures_of(side: str, reading: Reading) -> Reading:

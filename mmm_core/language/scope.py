@@ -136,7 +136,10 @@ class ScopeIndex:
             return ScopeVerdict("rejected", score, nearest, reason)
         if score < DEGRADE_BELOW:
             return ScopeVerdict(
-                "degraded", score, nearest, f"not sure of it: score {score:.2f}; sure from {DEGRADE_BELOW}"
+                "degraded",
+                score,
+                nearest,
+                f"not sure of it: score {_below(score, DEGRADE_BELOW)}; sure from {DEGRADE_BELOW}",
             )
         return ScopeVerdict("accepted", score, nearest, "")
 
@@ -177,6 +180,11 @@ def taken_clauses(whole: ScopeVerdict, verdicts: list[ScopeVerdict]) -> list[int
     return [i for i, verdict in enumerate(verdicts) if verdict.score >= least]
 
 
+def _below(score: float, mark: float) -> str:
+    """A score below a mark in as many digits as tell it from the mark: 0.97 is not below 0.97."""
+    return next(said for digits in range(2, 18) if float(said := f"{score:.{digits}f}") < mark)
+
+
 def _by_cosine(nearest: str, score: float, impossible: str, other: float) -> ScopeVerdict:
     if score < COSINE_REJECT_BELOW:
         reason = f"nothing like it was learnt (nearest: '{nearest}', {score:.2f}; needed {COSINE_REJECT_BELOW})"
@@ -185,7 +193,7 @@ def _by_cosine(nearest: str, score: float, impossible: str, other: float) -> Sco
         reason = f"it is like '{impossible}' ({other:.2f}), which this upper-body model cannot do"
         return ScopeVerdict("rejected", score, nearest, reason)
     if score < COSINE_DEGRADE_BELOW or other > score:
-        reason = f"not sure of it: score {score:.2f}; sure from {COSINE_DEGRADE_BELOW}"
+        reason = f"not sure of it: score {_below(score, COSINE_DEGRADE_BELOW)}; sure from {COSINE_DEGRADE_BELOW}"
         return ScopeVerdict("degraded", score, nearest, reason)
     return ScopeVerdict("accepted", score, nearest, "")
 

@@ -19,8 +19,8 @@ _RESTART = re.compile(
     rf"\b(\w+(?: \w+){{0,2}}),? (?:{_FILLER}|i mean|you know|sorry|no wait)(?:,|\.{{2,}})? (?=\1\b)", re.IGNORECASE
 )
 _STUTTER = re.compile(r"\b(the|your|to|at|with|a|and|then|left|right|hand|arm|raise|turn|look|wave|lift|put|clap|nod|bow|shrug|point)(?:,|\.{2,}|-)? (?=\1\b)(?!\1 (?:and|then) \1)(?!left right|right left)(?<!left right )(?<!right left )", re.IGNORECASE)  # fmt: skip
-_TWICE = re.compile(r"\b((?:\w+ ){2,}\w+) \1\b")
-"""A command repeated at once: "lift your right arm lift your right arm"."""
+_TWICE = re.compile(r"\b((?:(?!(?:then|and)\b)\w+ ){2,}(?!(?:then|and)\b)\w+) \1\b")
+"""A command repeated at once: "lift your right arm lift your right arm". "Nod then bow then nod then bow" are four commands."""
 _PAUSES = re.compile(rf"\b(?:{_FILLER}|i mean|you know|sorry|no wait)\b")
 """Words that mark a restart."""
 _FILLERS = re.compile(

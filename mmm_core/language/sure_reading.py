@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import re
+from collections import Counter
 
 from mmm_core.language.alternatives import is_for_any_other
 from mmm_core.language.clause_patterns import LIMB_FIRST
 from mmm_core.language.commands import Reading
+from mmm_core.language.completed_at_once import base_of
 from mmm_core.language.denial_patterns import ANYTHING_BUT, SOMETHING_ELSE
 from mmm_core.language.known_phrases import BESIDE, CAPTION_SUBJECT, is_known_phrase, key_of
 from mmm_core.language.limbs import begins_with_a_verb, is_gesture_verb, limbs_of
@@ -24,6 +26,12 @@ _LONGEST_DENIED = 6
 """Words of a denied act, at most, in which no command is sought."""
 _MOST_BESIDE_DENIED = 6
 """Words beside the denied acts, at most, in which no command is sought."""
+_WORD = re.compile(r"[a-z']+")
+_OF_ORDER_OR_DENIAL = frozenset(
+    "and after before but do does don't dont finally first have never next not now please then you your the".split()
+)
+_BEFORE_AND_AFTER = re.compile(r"\bbefore\b.*\bafter\b|\bafter\b.*\bbefore\b")
+"""An act between two others: "bow before you clap but after you nod", which the networks put last."""
 _COMPARES = re.compile(r"\b(?:as if|as though|like)\b")
 _MOST_TOLD_TERSELY = 4
 """Words of a sentence of several commands, at most, that the rules read alone: "jab, uppercut"."""
@@ -75,11 +83,25 @@ def needs_tags(reading: Reading) -> bool:
         return False
     if len(reading.steps) > _MOST_LEARNT and is_sure(reading):
         return False
-    if _may_be_divided_wrongly(reading) or (reading.denied and reading.steps):
+    says_nothing_else = _says_nothing_else(reading)
+    if says_nothing_else and _BEFORE_AND_AFTER.search(reading.text.lower()):
+        return False
+    if _may_be_divided_wrongly(reading) or (reading.denied and reading.steps and not says_nothing_else):
         return True
     known = len(reading.steps) > _MOST_LEARNT or all(key_of(c) is None or is_known_phrase(c) for c in commands)
     compares = _COMPARES.search(reading.text) is not None and not any(map(_COMPARES.search, commands))
     return compares or not (known and is_sure(reading))
+
+
+def _says_nothing_else(reading: Reading) -> bool:
+    """Whether all words of a sentence are those of its commands, which are sure, of what it denies, of order and of denial.
+
+    The networks left the bow out of "wave, then bow, do not clap, finally nod".
+    """
+    said = " ".join((reading.words, *reading.denied)).lower()
+    left = Counter(map(base_of, _WORD.findall(reading.text.lower())))
+    left.subtract(map(base_of, _WORD.findall(said)))
+    return is_sure(reading) and all(word in _OF_ORDER_OR_DENIAL for word, n in left.items() if n > 0)
 
 
 def _may_be_divided_wrongly(reading: Reading) -> bool:

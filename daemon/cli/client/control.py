@@ -28,7 +28,7 @@ def stop(at: OmitArgPrefixes[Connection] = Connection(), json: bool = False) -> 
         at: where the daemon is.
         json: print one JSON object.
     """
-    with at.client() as robot:
+    with at.client_to_stop() as robot:
         return _tell(robot, robot.stop(), json)
 
 
@@ -43,7 +43,7 @@ def estop(at: OmitArgPrefixes[Connection] = Connection(), json: bool = False) ->
         at: where the daemon is.
         json: print one JSON object.
     """
-    with at.client() as robot:
+    with at.client_to_stop() as robot:
         return _tell(robot, robot.estop(), json)
 
 

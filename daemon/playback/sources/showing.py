@@ -29,6 +29,8 @@ _TOUCHING_M, _LOOKED_AT = 0.03, 200
 """Metres between a robot's hands up to which they touch, and number of poses examined."""
 _OTHER_POSE_DEG = 20.0
 """Degrees by which the first pose of a robot differs from that of a motion where it began in another one."""
+_HELD_S = 1.0
+"""Seconds of a held pose that are judged beside the way to it."""
 LONGEST_S = 15.0
 """Seconds of a motion that are judged; a longer motion is not judged."""
 
@@ -89,7 +91,9 @@ class Showing:
             lacks = lacking(self._retargeter, motion, acts)
         return Shows(", then ".join([sentence(acts, counted=not draft), *to_come]), lacks)
 
-    def verdict(self, posture: PoseSequence, scenes: Sequence[Scene], q_rad: Array, fps: float) -> Verdict:
+    def verdict(
+        self, posture: PoseSequence, scenes: Sequence[Scene], q_rad: Array, fps: float, *, held: bool = False
+    ) -> Verdict:
         """Judge whether the robot has shown a motion.
 
         Args:
@@ -97,7 +101,10 @@ class Showing:
             scenes: its scenes.
             q_rad: (T, J) goals that the robot was given for it, radians.
             fps: number of goals a second.
+            held: whether the robot stays in the last goal.
         """
+        if held and len(q_rad):
+            q_rad = np.concatenate([q_rad, np.repeat(q_rad[-1:], round(_HELD_S * fps), 0)])
         if len(q_rad) < 2 or len(posture) > LONGEST_S * posture.fps:
             return Verdict()
         motion = posture.motion()

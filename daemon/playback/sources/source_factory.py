@@ -158,8 +158,8 @@ class SourceFactory:
             q_rad: (T, J) goals that the robot was given for it, radians.
             fps: number of goals a second.
         """
-        kept = self.kept.of_command(entry.id)
-        return Verdict() if kept is None else self._showing.verdict(*kept.judged, q_rad, fps)
+        kept, held = self.kept.of_command(entry.id), isinstance(entry.request, Play) and entry.request.hold
+        return Verdict() if kept is None else self._showing.verdict(*kept.judged, q_rad, fps, held=held)
 
     async def _drafted(self, entry: Entry, request: Say) -> PreparedSource:
         """The source of a preview that can be played at once, while the generator goes on with the motion."""

@@ -8,7 +8,7 @@ import pytest
 
 from daemon.front.stop_texts import stops, verb_refusal
 from daemon.wire.requests import Say
-from mmm_core.language.stop_words import _STOP_PHRASES, _STOP_WORDS, means_stop
+from mmm_core.language.stop_words import _POWER_PHRASES, _STOP_PHRASES, _STOP_WORDS, means_stop
 from tests.support.stop_words_page import listed
 
 
@@ -40,7 +40,7 @@ SAID = """
 """.strip().split(", ")
 
 
-@pytest.mark.parametrize("text", [*listed("These stop"), *SAID, *sorted(_STOP_WORDS), *_STOP_PHRASES])
+@pytest.mark.parametrize("text", [*listed("These stop"), *SAID, *sorted(_STOP_WORDS), *_STOP_PHRASES, *_POWER_PHRASES])
 def test_every_text_that_stops_does_so_above_the_rate(text: str) -> None:
     """Five of the page's own texts had none of the words that were looked for first."""
     if means_stop(text):  # some phrases only name what is to stop

@@ -10,7 +10,8 @@ import pytest
 from daemon.gestures.clips import load_clips
 from daemon.gestures.library import SHIPPED
 from daemon.playback.sources.showing import Showing, Verdict
-from daemon.poses.pose_sequence import PoseSequence, faded_in, joined, standing
+from daemon.poses.cycles import find_hold
+from daemon.poses.pose_sequence import PoseSequence, at_tempo, faded_in, joined, standing
 from mmm_core.motion.motion import FPS
 from mmm_core.motion.posture_features import PostureFeatures, posture_features
 from mmm_core.recognition.seen import Scene
@@ -116,3 +117,12 @@ def test_scenes_that_are_still_being_made_are_told_by_their_words():
     bow = clip("bow")
     both = [*scenes(bow, "bow"), Scene(9.0, "nod\nnod twice (1.00)")]
     assert showing("reference").of(bow, both, draft=True).sentence == "bows, then what 'nod' asks"
+
+
+def test_a_pose_that_is_held_is_shown_though_its_motion_is_short():
+    """A hand raised in 1.3 s and held was told not to be raised."""
+    posture = at_tempo(clip("raise_left"), len(clip("raise_left")) / (2 * FPS))
+    goals_rad = Retargeter(load_robot("reference")).retarget(posture.motion()).at_rate(FPS)
+    up = goals_rad[: find_hold(posture) + 1]
+    told = showing("reference").verdict(posture, scenes(posture, "raise your left hand"), up, FPS, held=True)
+    assert (told.shown, told.missing) == ("shown", ""), told

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from mmm_core.language.command_changes import NothingToReferToError
 from mmm_core.language.commands import MOST_STEPS, PlainCommand, exactly, read_exactly
-from mmm_core.language.context import conversation, in_context
+from mmm_core.language.context import InContext, conversation, in_context
 from mmm_core.language.manner import Manner
 from mmm_core.language.reading import read
 from mmm_core.language.stop_words import means_stop
@@ -145,3 +145,21 @@ def test_a_text_that_is_not_written_exactly(text: str) -> None:
 def test_what_is_written_exactly_stays_within_its_bounds() -> None:
     (step,) = read("exactly: wave (9 times as fast, 0.1 times as large, for 99 s)").steps
     assert step[0] == PlainCommand("wave", Manner(2.0, 1 / 1.8, 30.0), frozenset({"some_arm"}))
+
+
+@pytest.mark.parametrize(
+    ("texts", "sentence"),
+    [
+        (("nod", "a hundred times"), "nod thirty times"), (("nod", "200 times"), "nod thirty times"),
+        (("clap slowly", "normal"), "clap"), (("raise your left arm", "lower"), "lower your left arm"),
+    ],
+)  # fmt: skip
+def test_follow_ups_that_became_other_motions(texts: tuple[str, ...], sentence: str) -> None:
+    """The words "a hundred times" alone raised one hand and waved the other."""
+    found = conversation(texts)[-1]
+    assert isinstance(found, InContext) and found.reading.sentences == (sentence,)
+
+
+def test_a_number_alone_has_nothing_to_refer_to() -> None:
+    with pytest.raises(NothingToReferToError):
+        conversation(["a hundred times"])

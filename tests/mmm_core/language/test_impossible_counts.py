@@ -71,3 +71,19 @@ def test_zero_times_is_not_at_all(zero: str) -> None:
     assert (alone.steps, alone.denied, alone.notes) == ((), ("nod your head",), ())
     beside = within_counts(Reading("", ((PlainCommand(f"nod {zero}"), PlainCommand("clap")), (PlainCommand("bow"),))))
     assert beside.sentences == ("clap", "bow") and beside.denied == ("nod",)
+
+
+@pytest.mark.parametrize(
+    ("text", "seconds"), [("wave for 100 seconds", 30), ("raise your hand for 2 minutes", 30), ("bow for 5 seconds", 5)]
+)
+def test_a_hold_has_thirty_seconds_at_most(text: str, seconds: float) -> None:
+    reading = within_counts(read(text))
+    assert reading.steps[0][0].manner.hold_s == seconds
+    assert bool(reading.notes) == (seconds == 30)
+
+
+@pytest.mark.parametrize("times", ["-3 times", "minus three times", "negative 2 times"])
+def test_less_than_zero_times_is_not_at_all(times: str) -> None:
+    """`wave -3 times` waved."""
+    reading = within_counts(Reading("", ((PlainCommand(f"wave {times}"),),)))
+    assert (reading.steps, reading.denied) == ((), ("wave",))

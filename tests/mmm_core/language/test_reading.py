@@ -217,3 +217,27 @@ def test_the_words_of_the_corpus_are_those_of_its_phrases() -> None:
 )  # fmt: skip
 def test_likely_words_of_other_gestures_stay(text: str) -> None:
     assert said(text) == [[text]]
+
+
+@pytest.mark.parametrize(
+    ("text", "commands"),
+    [
+        ("clap then bow then clap then bow then clap then bow", ["clap", "bow"] * 3),
+        ("nod then wave then nod then wave then nod then wave then nod then wave", ["nod", "wave"] * 4),
+        ("bow before you clap, but after nodding", ["nod", "bow", "clap"]),
+        ("wave after you nod but before you bow", ["nod", "wave", "bow"]),
+        ("lift your right arm lift your right arm", ["lift your right arm"]),
+        ("raise your left arm, then lower", ["raise your left arm", "lower your left arm"]),
+    ],
+)  # fmt: skip
+def test_commands_in_turn_are_all_there(text: str, commands: list[str]) -> None:
+    """Repeated pairs were taken for a slip of the tongue, and an act between two others came last."""
+    assert [command.text for step in read(text).steps for command in step] == commands
+
+
+@pytest.mark.parametrize(
+    ("text", "sizes"), [("bow deeply, then slightly", (1.4, 0.6)), ("wave widely, then a little", (1.4, 0.6))]
+)
+def test_each_command_has_its_own_size(text: str, sizes: tuple[float, float]) -> None:
+    found = [command.manner.size for step in read(text).steps for command in step]
+    assert found[1] == sizes[1] and found[0] in (1.0, sizes[0])  # "bow deeply" is a phrase of its own

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -9,6 +11,7 @@ from hypothesis import strategies as st
 from mmm_core.language.commands import PlainCommand, Reading
 from mmm_core.language.limbs import limbs_of
 from mmm_core.language.mirroring import mirror_words
+from mmm_core.language.reading import read
 from mmm_core.language.said_arm import arm_said, with_said_arm, without_denied_arm
 
 _SAID = (
@@ -104,3 +107,16 @@ def test_an_arm_that_one_of_several_commands_takes_stays() -> None:
     steps = tuple((PlainCommand(said, limbs=limbs_of(said)),) for said in ("wave your left hand", "bow politely"))
     reading = Reading("", steps, ("the left hand",))
     assert without_denied_arm(reading) == reading
+
+
+@pytest.mark.parametrize(
+    ("text", "side"),
+    [
+        ("raise your left arm and keep your left arm down", "left"),
+        ("raise your right arm but keep your right arm still", "right"),
+    ],
+)
+def test_an_arm_that_is_asked_for_and_denied_moves_no_other(text: str, side: str) -> None:
+    """The arm that nobody had named moved."""
+    found = without_denied_arm(replace(read(text), denied=(f"the {side} arm",)))
+    assert found.words == f"raise your {side} arm" and not found.denied and f"not the {side} arm" in found.notes[0]

@@ -65,3 +65,24 @@ def test_what_is_surely_denied_is_read_without_them(text: str) -> None:
     reading = read(text)
     assert not reading.steps and reading.denied
     assert not needs_networks(reading)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "wave then bow, do not clap, finally nod",
+        "clap. bow. Do not wave. Nod.",
+        "bow before you clap but after you nod",
+    ],
+)
+def test_the_rules_alone_read_what_says_nothing_else(text: str) -> None:
+    """The networks left the bow of the first of these out."""
+    assert not needs_networks(read(text))
+
+
+@pytest.mark.parametrize(
+    "text", ["no carrying, you will drop it", "wave, and do not bow while he looks", "clap before the show"]
+)
+def test_other_words_need_the_networks(text: str) -> None:
+    reading = read(text)
+    assert needs_networks(reading) or not reading.steps
