@@ -19,6 +19,7 @@ from daemon.wire.requests import MAX_TEXT_CHARS, Gesture, Lease, Say, tag_of
 from mmm_core.language.command_changes import NothingToReferToError
 from mmm_core.language.commands import EXACTLY, Reading, exactly, read_exactly
 from mmm_core.language.context import InContext, in_context
+from mmm_core.language.delays import delayed
 from mmm_core.language.endless import endless
 from mmm_core.language.reading import read
 from mmm_core.language.warming import warmed
@@ -83,7 +84,7 @@ class Conversations:
         try:
             meant = in_context(request.text, None if last is None else self._reading_of(last))
             if meant is None or last is None:
-                entry.request = _without_end(request)
+                entry.request = _without_end(_later(request, self._now_s()))
                 return
             text = exactly(meant.reading.steps)
             if len(text) > MAX_TEXT_CHARS:
@@ -128,6 +129,14 @@ def _played(request: Say, last: Entry, meant: InContext, text: str) -> Say:
     elif meant.times and not request.loop:
         options["repeat"] = meant.times
     return msgspec.structs.replace(request, text=text, **options)
+
+
+def _later(request: Say, now_s: float) -> Say:
+    """The request at the time that its text names, where it says not when itself: "in ten seconds, clap"."""
+    found = delayed(request.text) if request.when == "now" else None
+    if found is None:
+        return request
+    return msgspec.structs.replace(request, text=found.text, when="at", at_s=now_s + found.delay_s)
 
 
 def _without_end(request: Say) -> Say:

@@ -25,6 +25,7 @@ from mmm_core.language.command_changes import (
 from mmm_core.language.commands import Reading, Steps
 from mmm_core.language.corrections import corrected
 from mmm_core.language.count_words import ADVERBS, MOST, NUMBERS
+from mmm_core.language.delays import read_later
 from mmm_core.language.ellipsis import completed
 from mmm_core.language.endless import WithoutEnd, read_without_end
 from mmm_core.language.multiples import multiple_in
@@ -200,7 +201,7 @@ def conversation(
         if means_stop(text):
             meant.append(Reading(text, ()))
             continue
-        found = in_context(text, before) or read_without_end(text, reads) or reads(text)
+        found = in_context(text, before) or read_later(text, reads) or read_without_end(text, reads) or reads(text)
         meant.append(found)
         now = found if isinstance(found, Reading) else found.reading
         before = now if now.steps else before

@@ -185,3 +185,11 @@ def test_what_follows_a_motion_without_end_goes_on_as_well(desk):
     slower = desk.say(Say(id="b", text="slower")).request
     assert slower.loop and slower.text == "exactly: wave (0.65 times as fast)"
     assert not desk.say(Say(id="c", text="clap")).request.loop
+
+
+def test_a_text_may_say_when_to_begin(desk):
+    """Clapping in ten seconds was clapping at once, and faster."""
+    said = desk.say(Say(id="a", text="in ten seconds, keep clapping")).request
+    assert (said.text, said.when, said.at_s, said.loop) == ("clap", "at", desk.time_s + 10, True)
+    timed = Say(id="b", text="in ten seconds, clap", when="after")
+    assert desk.say(timed).request == timed
