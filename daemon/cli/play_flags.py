@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import sys
 import uuid
 from dataclasses import dataclass, fields
@@ -62,13 +63,16 @@ def built(kind: type[P], how: PlayFlags, **fields: Any) -> P:
     """A request with the flags of the command line.
 
     Raises:
-        CommandError: the flags contradict each other, or the seed is invalid.
+        CommandError: the flags contradict each other, or the seed or a number is invalid.
     """
     from daemon.wire.requests import MAX_SEED
 
     seed = fields.get("seed", 0)
     if not 0 <= seed <= MAX_SEED:
         raise CommandError(f"--seed {seed}; allowed: 0 to {MAX_SEED}")
+    for name, value in {**fields, **how.options()}.items():
+        if isinstance(value, float) and not math.isfinite(value):
+            raise CommandError(f"--{name.replace('_', '-')} {value}; allowed: a finite number")
     try:
         return kind(id=how.id or uuid.uuid4().hex, **fields, **how.options())
     except ValueError as error:

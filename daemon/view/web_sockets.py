@@ -64,6 +64,10 @@ class RequestHandler(_Socket):
 
     async def post(self, kind: str) -> None:
         frame, server = self.request.body, self.server
+        until = self.get_query_argument("until", "")
+        if until not in ("", "end"):
+            self.refuse(400, f"until={until[:20]!r}; allowed: end, or none")
+            return
         if len(frame) > MOST_BYTES:
             self.refuse(413, f"a request of {len(frame):,} bytes; at most {MOST_BYTES:,} are taken", "too_large")
             return
@@ -88,7 +92,7 @@ class RequestHandler(_Socket):
                 await self._answer(unreached(frame))
                 return
             self.set_status(_STATUS.get(type_of(first), 200))
-            if self.get_query_argument("until", "") != "end":
+            if until != "end":
                 await self._answer(first)
                 return
             self.set_header("Content-Type", "application/x-ndjson")

@@ -112,6 +112,8 @@ class Inbetween(Play, tag="inbetween", kw_only=True):
                 raise ValueError(f"pose {number}: give one of `gesture`, `command` and `standing`")
             if pose.standing and pose.time_s is not None:
                 raise ValueError(f"pose {number}: `time_s` belongs to a `gesture` or `command`")
+            if pose.at_s < 0:
+                raise ValueError(f"pose {number}: at {pose.at_s:g} s: give a time from 0 on")
             if pose.at_s < before_s + SHORTEST_GAP_S - 1e-9:
                 raise ValueError(
                     f"pose {number}: at {pose.at_s:g} s, after one at {before_s:g} s: leave 0.2 s between them"

@@ -30,7 +30,7 @@ _WORD = re.compile(r"[a-z']+")
 _OF_ORDER_OR_DENIAL = frozenset(
     "and after before but do does don't dont finally first have never next not now please then you your the".split()
 )
-_BEFORE_AND_AFTER = re.compile(r"\bbefore\b.*\bafter\b|\bafter\b.*\bbefore\b")
+_BEFORE_AND_AFTER = re.compile(r"(?!before\b|after\b)\w+\b.*?(?:\bbefore\b.*\bafter\b|\bafter\b.*\bbefore\b)")
 """An act between two others: "bow before you clap but after you nod", which the networks put last."""
 _COMPARES = re.compile(r"\b(?:as if|as though|like)\b")
 _MOST_TOLD_TERSELY = 4
@@ -76,15 +76,16 @@ def needs_tags(reading: Reading) -> bool:
     A sentence that denies something beside a command needs tags as well, since the command may be only a reason: "no carrying,
     you'll drop it". Of 3,205 sentences by seven writers, networks mend 12 such that the rules read surely, and spoil 3.
     Words that may say a manner are in a command that is no phrase of the corpus, or in a comparison that was left out. The
-    networks would leave out some of more than four commands, so the rules alone read such a sentence if they are sure of it.
+    networks would leave out some of more than four commands, so the rules alone read such a sentence if they are sure of it,
+    and one of several commands that says nothing else.
     """
     commands = [BESIDE.sub("", command.text.lower()) for step in reading.steps for command in step]
     if len(commands) == 1 and _IS_CAPTION.match(commands[0]):
         return False
     if len(reading.steps) > _MOST_LEARNT and is_sure(reading):
         return False
-    says_nothing_else = _says_nothing_else(reading)
-    if says_nothing_else and _BEFORE_AND_AFTER.search(reading.text.lower()):
+    says_nothing_else = len(reading.steps) > 1 and _says_nothing_else(reading)
+    if says_nothing_else and _BEFORE_AND_AFTER.match(reading.text.lower()):
         return False
     if _may_be_divided_wrongly(reading) or (reading.denied and reading.steps and not says_nothing_else):
         return True

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from daemon.cli.connection import Connection
 from daemon.cli.program import main
 from daemon.client.errors import exit_status, stamp
 from daemon.errors import CommandError
@@ -44,6 +45,30 @@ def test_a_number_that_is_not_finite_is_refused_before_it_is_sent(request_: requ
     """JSON has no such numbers: `look --yaw nan` freed the head and said that it was held."""
     with pytest.raises(CommandError, match="finite number"):
         stamp(request_)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["say", "wave", "--tempo", "nan"], "--tempo nan; allowed: a finite number"),
+        (["say", "wave", "--seconds", "inf"], "--seconds inf; allowed: a finite number"),
+        (["inbetween", "arms_out@-1", "standing@2"], "pose 1: at -1 s: give a time from 0 on"),
+        (["status", "--timeout-s", "0"], "--timeout-s 0; allowed: more than 0"),
+    ],
+)  # fmt: skip
+def test_a_wrong_number_is_said_as_it_was_typed(
+    arguments: list[str], said: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A tempo of nan was told as None, and a time-out of zero was the daemon's fault."""
+    assert main(arguments) == 2
+    assert said in capsys.readouterr().err
+
+
+def test_no_wrong_time_out_keeps_a_stop_from_being_sent() -> None:
+    """`mmmd estop --timeout-s 0` ended before anything was sent."""
+    for timeout_s in (0.0, -1.0, math.nan):
+        with Connection(timeout_s=timeout_s).client_to_stop() as robot:
+            assert robot._timeout_s == Connection().timeout_s
 
 
 def test_a_refused_text_takes_no_other_motions_place(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
