@@ -23,6 +23,10 @@ from daemon.poses.pose_sequence import PoseSequence, at_steps, joined, mirrored,
 from daemon.state.replies import NotPlayableError, generator_failed
 from daemon.wire.events import Progress
 from daemon.wire.requests import Story
+from mmm_core.language.command_changes import NothingToReferToError
+from mmm_core.language.commands import Reading, exactly
+from mmm_core.language.context import in_context
+from mmm_core.language.reading import read
 from mmm_core.recognition.seen import Scene, scenes_seen, sentence
 
 log = logging.getLogger(__name__)
@@ -79,6 +83,8 @@ class StorySource(MotionSource):
         n_scenes = len(request.scenes)
         self._n_all = None if request.loop else n_scenes * request.repeat
         self._n_asked = self._n_barren = 0
+        self._before: Reading | None = None
+        self._asked_as = (-1, "")
         self._parts: list[PoseSequence] = []
         self._news: list[SceneNews] = []
         self._told = b""
@@ -184,7 +190,7 @@ class StorySource(MotionSource):
         over = n_all is not None and self._n_asked >= n_all  # `finish` came after the last scene was requested
         scene = None if over else scenes[place]
         last = over or (n_all is not None and self._n_asked == n_all - 1)
-        text, seconds = (None, None) if scene is None else (scene.text, scene.seconds)
+        text, seconds = (None, None) if scene is None else (self._in_full(scene.text, place), scene.seconds)
         timeout_s = self._timeout_s
         generated = await self._generator.scene(text, self._request.seed, seconds, self._told, timeout_s, last=last)
         self._told, self._complete = generated.told, last
@@ -196,6 +202,19 @@ class StorySource(MotionSource):
             shows = sentence(scenes_seen(m, [Scene(m.duration_s, words)])) if len(m.joints_m) else generated.understood
             self._news.append(SceneNews(place + 1, scene.text, m.status, generated.reason, shows, m.scope_score))
         return generated
+
+    def _in_full(self, text: str, place: int) -> str:
+        """The text of the next scene, with the full meaning of one that refers to the scene before it: "again", "slower"."""
+        if self._asked_as[0] == self._n_asked:  # it was lost, and is asked for again
+            return self._asked_as[1]
+        try:
+            meant = in_context(text, self._before if place else None)
+            self._before = read(text) if meant is None else meant.reading
+            full = text if meant is None else exactly(meant.reading.steps)
+        except NothingToReferToError:
+            full = text
+        self._asked_as = (self._n_asked, full)
+        return full
 
     def _varied(self, p: PoseSequence) -> PoseSequence:
         """`p` with mirror, size and tempo, segment by segment as if applied to the whole."""

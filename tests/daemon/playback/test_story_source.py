@@ -74,6 +74,25 @@ def test_scenes_are_asked_in_order_each_with_what_was_told():
     assert [(n.scene, n.status) for n in score.reports(1)] == [(1, "accepted"), (2, "accepted"), (3, "accepted")]
 
 
+def test_a_scene_may_refer_to_the_one_before_it():
+    """The scene "again" was left out, and "slower" was a motion of its own; a scene that is lost is asked for as it was."""
+    teller = Teller()
+    score, _, _ = asyncio.run(tell(story("wave", "again", "slower", "now clap", "slower", repeat=2), teller))
+    slow, clap = "exactly: wave (0.65 times as fast)", "now clap"
+    once = ["wave", "exactly: wave", slow, clap, "exactly: clap (0.65 times as fast)"]
+    assert [text for text, _, _ in teller.asked] == once * 2
+    assert [news.text for news in score.reports(1)][:3] == ["wave", "again", "slower"]
+    teller = Teller()
+
+    async def lose_the_second() -> None:
+        score = StorySource(story("wave", "slower", "slower"), teller, 5.0)
+        assert score._in_full("wave", 0) == "wave"
+        score._n_asked = 1
+        assert [score._in_full("slower", 1) for _ in range(2)] == [slow] * 2
+
+    asyncio.run(lose_the_second())
+
+
 def test_repeats_go_round_the_whole_story_in_one_motion():
     teller = Teller()
     asyncio.run(tell(story("a", "b", repeat=3), teller))
