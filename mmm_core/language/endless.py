@@ -43,6 +43,11 @@ _STAYS = re.compile(
     rf"(?:stay|remain|freeze) (?:there|like (?:that|this)|in (?:that|this) (?:pose|position)))(?:,? {_UNTIL})?{_ENDING}"
 )
 """A pose that lasts: "raise your arms and keep them up"."""
+_BESIDE = re.compile(r"\b(?:as|meanwhile|and|while(?! (?:i|we|he|she|they|the|my|our)\b))\b")
+"""Words beside a motion that lasts as long as another one: "keep nodding while you drum"."""
+_TO_AND_FRO = re.compile(
+    r"\b(?:left and right|right and left|up and down|back and forth|side to side|to and fro|round)\b"
+)
 _BENDS = re.compile(r"\b(?:bow|shrug)\b")
 """A gesture with strokes that is held all the same where that is said: "bow and hold it there"."""
 
@@ -84,6 +89,7 @@ def endless(text: str) -> Endless | None:
     said = mended(text).strip(" .!")
     stays = _STAYS.search(said)
     rest = said[: stays.start()] if stays else _AT_END.sub("", said)
+    says_the_end = rest != said
     if act := _GOES_ON.fullmatch(rest):
         rest = f"{act['courtesy']}{imperative(act['act'])}"
     elif rest == said and not _KEEPS.fullmatch(rest):
@@ -92,6 +98,8 @@ def endless(text: str) -> Endless | None:
     if reading.denied or len(reading.steps) != 1:
         return None
     (commands,) = reading.steps
+    if not says_the_end and (len(commands) > 1 or _BESIDE.search(rest)):
+        return None
     if any(command.manner.hold_s or count_asked(command.text) for command in commands):
         return None
     is_held = all(_can_be_held(command.text, bool(stays)) for command in commands)
@@ -103,4 +111,4 @@ def _can_be_held(command: str, stays: bool) -> bool:
     """Whether a command has a pose that lasts; of gestures that have none by themselves a text may say that they stay."""
     if _BENDS.search(command):
         return stays
-    return (stays or is_pose(command)) and not has_strokes(command)
+    return (stays or is_pose(command)) and not has_strokes(command) and _TO_AND_FRO.search(command) is None
