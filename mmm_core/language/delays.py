@@ -17,6 +17,8 @@ from mmm_core.language.spelling import mended
 
 LONGEST_DELAY_S = 40.0
 """Longest time that a text may wait; a client that waits for the end of its motion gives up after a minute."""
+MOST_WORDS = 60
+"""Words of a text that is looked at, at most."""
 _SECONDS = {**NUMBERS, "a": 1, "a couple of": 2, "a few": 3, "half a": 0.5}
 _NUMBER = "|".join(re.escape(word) for word in sorted(_SECONDS, key=len, reverse=True)) + r"|\d+(?:\.\d+)?"
 _TIME = rf"(?:about |exactly )?(?P<n>{_NUMBER}) ?(?P<unit>seconds?|secs?|s|minutes?|mins?)"
@@ -42,7 +44,7 @@ def delayed(text: str) -> Delayed | None:
     >>> delayed("In ten seconds, clap."), delayed("wait 5 seconds and then wave"), delayed("wave for ten seconds")
     (Delayed(text='clap', delay_s=10.0), Delayed(text='wave', delay_s=5.0), None)
     """
-    if text.startswith(EXACTLY):
+    if text.startswith(EXACTLY) or len(text.split(None, MOST_WORDS)) > MOST_WORDS:
         return None
     said = mended(text).strip(" .!")
     found = next(filter(None, (form.fullmatch(said) for form in _FORMS)), None)

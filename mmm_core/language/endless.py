@@ -18,6 +18,8 @@ from mmm_core.language.reading import read
 from mmm_core.language.spelling import mended
 from mmm_core.language.whole_gestures import has_strokes
 
+MOST_WORDS = 24
+"""Words of a text that is looked at, at most: a hostile one of hundreds would take a third of a second."""
 _COURTESY = r"(?P<courtesy>(?:(?:please|now|just|and|then|ok|okay|so|(?:can|could|would|will) you|i want you to|you should)[ ,]+)*)"
 _GOES_ON = re.compile(
     rf"{_COURTESY}(?:keep(?: on)?|continue|carry on|go on|(?:do not|never) (?:stop|quit|cease)) (?P<act>\w+ing\b.*)"
@@ -84,7 +86,7 @@ def endless(text: str) -> Endless | None:
     >>> endless("Please keep waving until I say stop."), endless("keep your arms up"), endless("keep nodding, then bow")
     (Endless(text='please wave', is_pose=False), Endless(text='keep your arms up', is_pose=True), None)
     """
-    if text.startswith(EXACTLY):
+    if text.startswith(EXACTLY) or len(text.split(None, MOST_WORDS)) > MOST_WORDS:
         return None
     said = mended(text).strip(" .!")
     stays = _STAYS.search(said)
