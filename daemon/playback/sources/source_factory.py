@@ -296,5 +296,5 @@ class SourceFactory:
             whole = await asyncio.to_thread(in_full, posture, play, score.marks, LONGEST_S)
             kept = replace(kept, in_full=whole)
         self.kept.add(entry.id, kept)
-        uncounted = draft or (play.repeat > 1 and kept.in_full is None)
+        uncounted = draft or play.loop or (play.repeat > 1 and kept.in_full is None)
         return score, partial(self._showing.of, *kept.judged, draft=uncounted)
