@@ -119,7 +119,7 @@ def test_a_repeated_motion_that_is_held_stops_in_its_last_round():
     assert ended and [len(stretch) for stretch in stretches] == [len(ARM), len(ARM), find_hold(ARM) + 1]
 
 
-def test_a_repeated_motion_ends_with_its_present_round_when_it_is_finished():
+def test_a_repeated_motion_that_is_finished_ends_with_its_round():
     score = ClipSource(WAVE, Say(text="wave", repeat=5))
     assert not score.next()[1]
     score.finish()
