@@ -53,10 +53,9 @@ def delayed(text: str) -> Delayed | None:
     groups = found.groupdict()
     number, unit = groups["n"] or groups.get("m", ""), groups["unit"] or groups.get("units", "")
     seconds = float(_SECONDS[number] if number in _SECONDS else number) * (60 if unit.startswith("min") else 1)
-    ends = (
-        found.re is _FORMS[-1] and len(read(found["rest"]).steps) != 1
-    )  # "raise your arm and lower it after 3 seconds"
-    return None if ends or not 0 < seconds <= LONGEST_DELAY_S else Delayed(f"{found['before']}{found['rest']}", seconds)
+    if found.re is _FORMS[-1] and len(read(found["rest"]).steps) != 1:  # "raise your arm and lower it after 3 seconds"
+        return None
+    return Delayed(f"{found['before']}{found['rest']}", seconds) if 0 < seconds <= LONGEST_DELAY_S else None
 
 
 def read_later(text: str, reads: Callable[[str], Reading]) -> Reading | None:

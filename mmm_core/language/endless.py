@@ -27,10 +27,11 @@ _GOES_ON = re.compile(
 _LIMB = r"(?:hands?|arms?|fists?|palms?|elbows?|head|chin|eyes|upper body|body)"
 _KEEPS = re.compile(rf"{_COURTESY}keep (?:(?:your|both|the) )+(?:left |right )?{_LIMB} .+")
 _NO_END = (
-    r"(?:keep going|keep at it|keep it up|keep (?:on )?doing (?:it|that|this|so)|go on|do not (?:ever )?stop|never stop|"
+    r"(?:keep going|keep at it|keep it up|keep (?:on )?doing (?:it|that|this|so)|do not (?:ever )?stop|never stop|"
     r"without (?:ever )?stopping|without (?:a |any )?(?:pauses?|breaks?|end)|non-?stop|continuously|constantly|endlessly|"
-    r"forever|for ever|indefinitely|in a loop|on repeat|(?:over and over|again and again|on and on)(?: again)?)"
+    r"forever|for ever|indefinitely|on repeat|over and over again|again and again|on and on)"
 )
+"""Not "move your hand in a loop", "roll your arms over and over" and "wave, go on", which say how, or spur on."""
 _UNTIL = (
     r"(?:until|till|til) (?:i (?:say|tell|ask|order|signal|shout|call|give|stop|interrupt)\b|"
     r"(?:i am|i'm|we are|we're) (?:done|back|ready)\b|you (?:are|get|hear)\b(?! (?:up|down|tired|there))|told\b|further notice|"

@@ -15,7 +15,7 @@ from mmm_core.language.endless import WithoutEnd, endless
     [
         ("keep waving", "wave"), ("Please keep on waving!", "please wave"), ("keep nodding until I say so", "nod"),
         ("continue clapping", "clap"), ("don't stop waving", "wave"), ("wave until I tell you to stop", "wave"),
-        ("wave non-stop", "wave"), ("clap your hands over and over", "clap your hands"), ("wave, and don't stop", "wave"),
+        ("wave non-stop", "wave"), ("clap your hands over and over again", "clap your hands"), ("wave, and don't stop", "wave"),
         ("nod and keep going until I stop you.", "nod"), ("wave forever", "wave"), ("wave until you are told otherwise", "wave"),
         ("keep turning the crank until further notice", "turn the crank"), ("wave continuously, please", "wave"),
         ("keep clapping while I walk in", "clap while i walk in"),
@@ -47,7 +47,7 @@ def test_poses_are_held(text: str, rest: str) -> None:
         "wave", "keep waving for ten seconds", "keep nodding three times", "keep waving, then bow", "don't wave forever", "stop",
         "wave until I count to five", "bow until your nose touches the floor", "wave until the bus is gone", "wave and hold it",
         "raise your hand", "keep your distance", "keep still", "look left and hold it for five seconds", "never stop",
-        "keep nodding while you drum", "keep your hands on your hips as you twist to the left", "keep nodding and waving",
+        "move your hand in a loop", "roll your arms over and over", "wave, go on", "keep nodding while you drum", "keep your hands on your hips as you twist to the left", "keep nodding and waving",
         "exactly: keep waving", "", "wave until I say stop, then bow",
     ],
 )  # fmt: skip
