@@ -47,7 +47,8 @@ def test_poses_are_held(text: str, rest: str) -> None:
         "wave", "keep waving for ten seconds", "keep nodding three times", "keep waving, then bow", "don't wave forever", "stop",
         "wave until I count to five", "bow until your nose touches the floor", "wave until the bus is gone", "wave and hold it",
         "raise your hand", "keep your distance", "keep still", "look left and hold it for five seconds", "never stop",
-        "move your hand in a loop", "roll your arms over and over", "wave, go on", "keep nodding while you drum", "keep your hands on your hips as you twist to the left", "keep nodding and waving",
+        "move your hand in a loop", "roll your arms over and over", "wave, go on",
+        "keep nodding while you drum", "keep your hands on your hips as you twist to the left", "keep nodding and waving",
         "exactly: keep waving", "", "wave until I say stop, then bow",
     ],
 )  # fmt: skip
