@@ -52,6 +52,7 @@ class ClipSource(MotionSource):
         return (self._again(end) if begun else self._posture[:end]), last
 
     def _first_round(self, loop: tuple[int, int]) -> PoseSequence:
+        """The motion up to the end of the part that can loop."""
         return joined([self._posture[: loop[0]], closed(self._posture, loop)])
 
     def _rounds(self, loop: tuple[int, int]) -> PoseSequence:
@@ -61,6 +62,7 @@ class ClipSource(MotionSource):
         return closed(self._posture, loop).at(np.arange(n_rounds * n_frames) % n_frames)
 
     def _after_rounds(self, loop: tuple[int, int]) -> PoseSequence:
+        """What follows the last round; another round where the motion ends with it."""
         tail = after_loop(self._posture, loop)
         return tail if len(tail) else closed(self._posture, loop)
 
